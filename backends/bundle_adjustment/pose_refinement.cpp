@@ -99,7 +99,8 @@ std::optional<SE3> pnp(const std::vector<Sighting>& sightings, const PinholeCame
 PoseEstimate estimate_pose(const SE3& prediction, const Reconstruction& map, std::span<const Keypoint> keypoints,
                            const PinholeCamera& camera, const ceres::LossFunction* loss, double limit_px) {
   std::vector<Sighting> sightings;
-  for (const Keypoint& z : keypoints) sightings.push_back({*map.tracks.at(z.track).position, z.pixel, z.noise.whitening()});
+  for (const Keypoint& z : keypoints)
+    sightings.push_back({*map.tracks.at(z.track).position, z.pixel, z.noise.whitening()});
   PoseEstimate result{refine(prediction, sightings, camera, loss), 0.0};
   result.median_px = median_error(result.T, sightings, camera);
   if (result.median_px <= limit_px) return result;

@@ -14,46 +14,6 @@ namespace {
 
 constexpr double kFar = 3.0;  ///< [sigmas] newest_error() above this means that the estimate has not converged
 
-/// Takes more steps after a damped one, which has not converged, while most tracks have large errors. The next state,
-/// extrapolated from this one, would be farther off still, where the robust loss gives little gradient.
-void converge(Engine& engine, UpdateSummary& update, const std::function<double()>& newest_error) {
-  constexpr double kHelp = 0.95;
-  constexpr int kSteps = 6;
-  double error = newest_error();
-  for (int i = 0; i < kSteps && error > kFar && update.damping > 0.0; ++i) {
-    update = engine.update();
-    const double now = newest_error();
-    if (!(now < kHelp * error)) return;
-    error = now;
-  }
-}
-
-/// Relaxes the prior over the newest intervals as far as it is worthwhile while most tracks have large errors. `qc`:
-/// the unrelaxed density.
-void relax_prior(Engine& engine, UpdateSummary& update, const std::function<double()>& newest_error,
-                 const Vector6& qc) {
-  constexpr double kWeakest = 1e4;  // relative to the given prior
-  constexpr int kIntervals = 3;
-  const FactorGraph& graph = engine.graph();
-  const int newest = static_cast<int>(graph.states.size()) - 1;
-  const int first = std::max(engine.first_state() + 1, newest - kIntervals + 1);
-  const std::vector<Vector6> densities(graph.qcs.begin() + first, graph.qcs.end());
-  const std::vector<double> expansions(graph.expansions.begin() + first, graph.expansions.end());
-  double tried = 1.0;
-  const auto weaken = [&](double factor) {
-    tried = factor;
-    for (std::size_t i = 0; i < densities.size(); ++i) {
-      engine.set_qc(first + static_cast<int>(i), factor * densities[i], expansions[i] / factor);
-    }
-    update = engine.update();
-    return newest_error();
-  };
-  const double most = kWeakest / graph.qc.cwiseQuotient(qc).maxCoeff();
-  const double kept = worthwhile_relaxation(newest_error(), most, weaken);
-  if (kept != tried) weaken(kept);
-  if (kept > 1.0) engine.set_next_qc(graph.qcs.back());
-}
-
 }  // namespace
 
 double worthwhile_relaxation(double error, double most, const std::function<double(double)>& error_at) {
@@ -76,12 +36,39 @@ double worthwhile_relaxation(double error, double most, const std::function<doub
   return kept;
 }
 
-UpdateSummary AggressiveMotion::follow(Engine& engine, const NoiseLearner& noise, const UpdateSummary& update) const {
-  UpdateSummary last = update;
-  const auto error = [&] { return newest_error(engine.graph(), noise); };
-  converge(engine, last, error);
-  relax_prior(engine, last, error, qc_);
-  return last;
+void AggressiveMotion::converge(Engine& engine, const NoiseLearner& noise, UpdateSummary& update) const {
+  constexpr double kHelp = 0.95;
+  constexpr int kSteps = 6;
+  double error = newest_error(engine.graph(), noise);
+  for (int i = 0; i < kSteps && error > kFar && update.damping > 0.0; ++i) {
+    update = engine.update();
+    const double now = newest_error(engine.graph(), noise);
+    if (!(now < kHelp * error)) return;
+    error = now;
+  }
+}
+
+void AggressiveMotion::relax_prior(Engine& engine, const NoiseLearner& noise, UpdateSummary& update) const {
+  constexpr double kWeakest = 1e4;  // relative to the given prior
+  constexpr int kIntervals = 3;
+  const FactorGraph& graph = engine.graph();
+  const int newest = static_cast<int>(graph.states.size()) - 1;
+  const int first = std::max(engine.first_state() + 1, newest - kIntervals + 1);
+  const std::vector<Vector6> densities(graph.qcs.begin() + first, graph.qcs.end());
+  const std::vector<double> expansions(graph.expansions.begin() + first, graph.expansions.end());
+  double tried = 1.0;
+  const auto weaken = [&](double factor) {
+    tried = factor;
+    for (std::size_t i = 0; i < densities.size(); ++i) {
+      engine.set_qc(first + static_cast<int>(i), factor * densities[i], expansions[i] / factor);
+    }
+    update = engine.update();
+    return newest_error(engine.graph(), noise);
+  };
+  const double most = kWeakest / graph.qc.cwiseQuotient(qc_).maxCoeff();
+  const double kept = worthwhile_relaxation(newest_error(graph, noise), most, weaken);
+  if (kept != tried) weaken(kept);
+  if (kept > 1.0) engine.set_next_qc(graph.qcs.back());
 }
 
 bool AggressiveMotion::is_prior_relaxed(const FactorGraph& graph) const {

@@ -23,9 +23,14 @@ class AggressiveMotion {
   AggressiveMotion(int min_landmarks, double window, const Vector6& qc)
       : min_landmarks_(min_landmarks), window_(window), qc_(qc) {}
 
-  /// Call after an update of the engine, which may have left most tracks with large errors: makes the further updates
-  /// that are needed. Returns the summary of the last update. `noise`: of the tracks.
-  UpdateSummary follow(Engine& engine, const NoiseLearner& noise, const UpdateSummary& update) const;
+  // Both are called after an update of the engine, which may have left most tracks with large errors, and make the
+  // further updates that are needed. `update`: the summary of the last one; `noise`: of the tracks.
+
+  /// Takes more steps after a damped one, which has not converged, while most tracks have large errors. The next state,
+  /// extrapolated from this one, would be farther off still, where the robust loss gives little gradient.
+  void converge(Engine& engine, const NoiseLearner& noise, UpdateSummary& update) const;
+  /// Relaxes the prior over the newest intervals as far as it is worthwhile while most tracks have large errors.
+  void relax_prior(Engine& engine, const NoiseLearner& noise, UpdateSummary& update) const;
 
   /// Is the prior relaxed now? The errors of the tracks are then those of the motion.
   bool is_prior_relaxed(const FactorGraph& graph) const;

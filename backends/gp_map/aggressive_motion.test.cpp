@@ -33,7 +33,9 @@ double relaxation_for(int seen, double offset, double turn) {
     const Vector2 pixel = expected + offset * Vector2(std::cos(i * turn), std::sin(i * turn));
     engine.add_observation(in_view[index(i)], {t, pixel, 10.0});
   }
-  motion.follow(engine, NoiseLearner(), engine.update());
+  UpdateSummary update = engine.update();
+  motion.converge(engine, NoiseLearner(), update);
+  motion.relax_prior(engine, NoiseLearner(), update);
   return graph.qc.maxCoeff() / kDensity;
 }
 

@@ -55,8 +55,10 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
   constexpr int kIterationsARound = 3;
   constexpr double kRoughly = 1e-4, kEstimated = 1e-6, kFixed = 1e-9;  // estimated parameters are not more accurate
   map_->engine.optimise(kIterationsARound, kRoughly);
-  if (is_tentative()) test_depth_reversal();
-  if (auto other = try_earlier_hypotheses(map_->engine, options_.health.min_landmarks)) {
+  if (options_.parts.reversal && is_tentative()) test_depth_reversal();
+  auto other =
+      options_.parts.earlier ? try_earlier_hypotheses(map_->engine, options_.health.min_landmarks) : std::nullopt;
+  if (other) {
     context_.log("found a better alternative estimate of the past with the data after it");
     map_->engine = std::move(*other);
   }
@@ -66,8 +68,8 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
       map_->engine.set_loss(map_->noise.loss(options_.loss, options_.loss_width));
     }
     if (learns_prior) learn_prior(map_->engine, {});
-    reject_outliers(map_->noise, {});
-    if (options_.learn.noise) estimate_track_noise(map_->noise, {});
+    if (options_.parts.outliers) reject_outliers(map_->noise, {});
+    if (options_.learn.noise && options_.parts.track_noise) estimate_track_noise(map_->noise, {});
     const bool settled = map_->engine.optimise(kIterationsARound, kRoughly).iterations == 1;
     if (settled && round > 0) break;  // the estimated parameters no longer change the estimate
   }

@@ -50,19 +50,19 @@ void GpMap::step(double t) {
   const auto start = std::chrono::steady_clock::now();
   take_observations(t);
   if (map_ || initialise(t)) {
-    remove_outliers();
+    if (options_.parts.outliers) remove_outliers();
     extrapolate_state(t);
     add_observations();
     drop_guessed_depths();
     add_landmarks();
-    bound_leverage();
+    if (options_.parts.leverage) bound_leverage();
     optimise();
     check_reappeared();
     learn();
     search_alternatives();
     map_->nearly_in_view.reset();
     confirm_map();
-    if (is_rejected()) {
+    if (options_.parts.rejection && is_rejected()) {
       reinitialise();
     } else {
       check_support();
@@ -168,7 +168,9 @@ void GpMap::add_observations() {
 
 void GpMap::optimise() {
   map_->last_update = map_->engine.update();
-  map_->last_update = map_->aggressive_motion.follow(map_->engine, map_->noise, map_->last_update);
+  const AggressiveMotion& motion = map_->aggressive_motion;
+  if (options_.parts.convergence) motion.converge(map_->engine, map_->noise, map_->last_update);
+  if (options_.parts.relaxation) motion.relax_prior(map_->engine, map_->noise, map_->last_update);
 }
 
 /// Estimates prior and noise from the data until now.
@@ -193,9 +195,10 @@ void GpMap::learn() {
 /// motion shows how smooth it was. The newest motion is observed from one side only; it keeps a prior that allows for
 /// aggressive motion.
 void GpMap::learn_from_smoothed(const TimeSpan& span, std::span<const double> surplus) {
-  if (!is_tentative()) reject_outliers(map_->noise, span);  // a tentative map may be wrong itself
+  if (options_.parts.outliers && !is_tentative())
+    reject_outliers(map_->noise, span);  // a tentative map may be wrong itself
   const bool relaxed = options_.learn.prior != LearnPrior::always && map_->aggressive_motion.is_prior_relaxed(graph());
-  if (options_.learn.noise && !relaxed) estimate_track_noise(map_->noise, span);
+  if (options_.learn.noise && options_.parts.track_noise && !relaxed) estimate_track_noise(map_->noise, span);
   if (options_.learn.prior == LearnPrior::never) return;
   learn_prior(map_->engine, span, surplus);
   const int k = graph().first_state_after(span.until) - 1;

@@ -20,6 +20,8 @@ constexpr int kSettling = 3;              ///< updates after an alternative esti
 /// Searches a better alternative estimate of the recent part or, in turn, of a whole tentative map, with one of two
 /// planes, in turn.
 void GpMap::search_alternatives() {
+  if (!options_.parts.search) map_->pending_checks = 0;
+  if (!options_.parts.search) return;
   if (!is_tentative() && !map_->search) tentative_ = TrackBuffer();
   const double now = graph().states.back().t;
   if (!map_->search && !(now < map_->next_search)) {
@@ -52,9 +54,9 @@ void GpMap::adopt(const RecentHypothesis& other) {
   other.place_in(map_->engine);
   const auto known = static_cast<int>(map_->known.size());
   if (other.first == 0) recall_rejected();
-  bound_leverage();
+  if (options_.parts.leverage) bound_leverage();
   for (int step = 0; step < kSettling; ++step) map_->last_update = map_->engine.update();
-  for (int j = known; j < std::ssize(map_->known); ++j) {
+  for (int j = known; options_.parts.outliers && j < std::ssize(map_->known); ++j) {
     if (is_outlier(j)) become_outlier(j);
   }
   map_->recent.reset();
@@ -75,7 +77,7 @@ void GpMap::check_reappeared() {
            track->second.landmark != entry.second.landmark;
   });
   const double now = graph().states.back().t;
-  if (!(now < map_->next_jump_search)) {
+  if (options_.parts.pose_jump && !(now < map_->next_jump_search)) {
     map_->next_jump_search = now + kPause;
     std::vector<Reappearance> seen;
     for (const auto& [track, reappearance] : reappeared) seen.push_back(reappearance);
@@ -87,7 +89,8 @@ void GpMap::check_reappeared() {
   }
   const auto is_far = [&](const auto& entry) { return reappearance_error(graph(), entry.second) > kFar; };
   const auto far = std::ranges::count_if(reappeared, is_far);
-  const bool checked = !is_tentative() && (std::ssize(reappeared) < kMany || 2 * far <= std::ssize(reappeared));
+  const bool checked = options_.parts.reassociations && !is_tentative() &&
+                       (std::ssize(reappeared) < kMany || 2 * far <= std::ssize(reappeared));
   std::erase_if(reappeared, [&](const auto& entry) {
     if (now - entry.second.t < kRecent) return false;
     if (checked && is_far(entry)) reject_reassociation(entry.first, entry.second);

@@ -69,6 +69,20 @@ void HealthOptions::declare(OptionSet& set) {
       .range(1);
 }
 
+void PartsOptions::declare(OptionSet& set) {
+  set.add("leverage", leverage, "landmarks that are much nearer than the scene get larger sigmas");
+  set.add("outliers", outliers, "tracks with large errors are rejected, drifting ones from where they drift");
+  set.add("track_noise", track_noise, "a track that is noisier than most gets larger sigmas; not without learn.noise");
+  set.add("convergence", convergence, "the newest state takes more steps while most tracks have large errors");
+  set.add("relaxation", relaxation, "the prior is relaxed while it suppresses the motion");
+  set.add("search", search, "alternative estimates with a plane's other structure are searched for");
+  set.add("rejection", rejection, "an initial map that most tracks do not fit is rejected");
+  set.add("pose_jump", pose_jump, "a jump of the pose that most re-acquired landmarks show is corrected");
+  set.add("reassociations", reassociations, "re-acquired landmarks that stay far off their place are rejected");
+  set.add("reversal", reversal, "the final estimate tests whether near and far are swapped in a young map");
+  set.add("earlier", earlier, "the final estimate searches the past for alternatives, with the data after it");
+}
+
 void Options::declare(OptionSet& set) {
   set.group("placement", placement, "control states");
   set.add("qc", qc,
@@ -92,6 +106,7 @@ void Options::declare(OptionSet& set) {
       .above(0.0);
   set.group("map", map, "landmarks");
   set.group("health", health, "degraded and lost");
+  set.group("parts", parts, "switches, to measure what each part is worth");
   set.add("lag", lag,
           "control states older than this are marginalised, for endless streams in bounded memory [s]; 0: full "
           "history, with a final estimate over everything")

@@ -54,6 +54,23 @@ struct HealthOptions {
   void declare(OptionSet& set);
 };
 
+/// Parts of the back-end that can be left out, each to measure what it is worth.
+struct PartsOptions {
+  bool leverage = true;
+  bool outliers = true;
+  bool track_noise = true;
+  bool convergence = true;
+  bool relaxation = true;
+  bool search = true;
+  bool rejection = true;
+  bool pose_jump = true;
+  bool reassociations = true;
+  bool reversal = true;
+  bool earlier = true;
+
+  void declare(OptionSet& set);
+};
+
 struct Options {
   PlacementOptions placement;
   std::vector<double> qc = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
@@ -67,6 +84,7 @@ struct Options {
   double max_initial_uncertainty = 0.35;
   MapOptions map;
   HealthOptions health;
+  PartsOptions parts;
   double lag = 0.0;
   bool per_observation = false;
   int final_iterations = 30;

@@ -61,7 +61,8 @@ void has_tracks_in_order(const MakeSource& make) {
   for (const TrackObservation& z : tracks_of(*source)) {
     require(z.t >= before, "its track observation at {} s comes after {} s", z.t, before);
     require(z.t <= to, "its track observation at {} s is after its end at {} s", z.t, to);
-    require(z.pixel.allFinite() && z.noise.is_valid(), "its observation of track {} at {} s is not finite", z.track, z.t);
+    require(z.pixel.allFinite() && z.noise.is_valid(), "its observation of track {} at {} s is not finite", z.track,
+            z.t);
     before = z.t;
   }
 }

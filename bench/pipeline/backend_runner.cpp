@@ -211,8 +211,7 @@ void BackEndRunner::digest(const TrackBatch& batch) {
     double t;
   };
   for (const TrackObservation& z : batch.observations) {
-    append_value(digested_,
-                 Seen{z.track, z.t, z.pixel.x(), z.pixel.y(), z.noise.xx(), z.noise.xy(), z.noise.yy()});
+    append_value(digested_, Seen{z.track, z.t, z.pixel.x(), z.pixel.y(), z.noise.xx(), z.noise.xy(), z.noise.yy()});
   }
   for (const TrackEnd& end : batch.ended) append_value(digested_, Ended{end.track, end.t});
   hash_.add(digested_);

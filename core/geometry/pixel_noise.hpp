@@ -50,9 +50,7 @@ class PixelNoise {
   bool operator==(const PixelNoise&) const = default;
 
   /// The noise of the sum of two independent errors.
-  PixelNoise operator+(const PixelNoise& other) const {
-    return {xx_ + other.xx_, xy_ + other.xy_, yy_ + other.yy_};
-  }
+  PixelNoise operator+(const PixelNoise& other) const { return {xx_ + other.xx_, xy_ + other.xy_, yy_ + other.yy_}; }
   /// The noise of the error times a factor.
   PixelNoise scaled(double factor) const {
     return {factor * factor * xx_, factor * factor * xy_, factor * factor * yy_};

@@ -91,8 +91,8 @@ Matrix12 covariance(const Json& value);                             ///< 144 num
 std::vector<ExpectedFeature> expected_features(const Json& value);  ///< [[track, x, y, z, u, v, Σuu, Σuv, Σvv]]
 /// [[track, t, u, v, sigma]] in time order. `covariances`: [[xx, xy, yy]] of each, instead of sigma, or null.
 std::vector<TrackObservation> observations(const Json& value, const Json* covariances = nullptr);
-std::vector<TrackEnd> track_ends(const Json& value);                ///< [[track, t]], time order
-std::vector<Landmark> landmarks(const Json& value);                 ///< [[track, x, y, z]]
-std::vector<DegradedSpan> degraded_spans(const Json& value);        ///< [[from, to, reason]]
+std::vector<TrackEnd> track_ends(const Json& value);          ///< [[track, t]], time order
+std::vector<Landmark> landmarks(const Json& value);           ///< [[track, x, y, z]]
+std::vector<DegradedSpan> degraded_spans(const Json& value);  ///< [[from, to, reason]]
 
 }  // namespace evbench::process

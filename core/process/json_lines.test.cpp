@@ -147,8 +147,7 @@ TEST_CASE("An invalid message is refused by a sentence that names the place") {
   CHECK_THROWS_WITH(check_keys(parse_json(R"({"outlier": 1})"), {"state", "outliers"}),
                     "unknown key \"outlier\"; did you mean \"outliers\"?");
   CHECK_THROWS_WITH(require(Json::object(), "state"), "\"state\" is missing in {}");
-  CHECK(refusal("[[1,0.1,5,5]]", rows) ==
-        "observations[0]: expected 5 numbers (track t x y sigma), found [1,0.1,5,5]");
+  CHECK(refusal("[[1,0.1,5,5]]", rows) == "observations[0]: expected 5 numbers (track t x y sigma), found [1,0.1,5,5]");
   CHECK_THAT(refusal("[[1,0.1,5,5,0]]", rows), ContainsSubstring("a sigma above 0"));
   CHECK_THAT(refusal("[[1.5,0.1,5,5,1]]", rows), ContainsSubstring("an integer"));
   CHECK_THAT(refusal("[[18446744073709551615,0.1,5,5,1]]", rows), ContainsSubstring("an integer of 64 bits"));

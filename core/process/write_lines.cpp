@@ -28,9 +28,7 @@ void put_numbers(Line& line, const double* values, Eigen::Index count) {
   for (Eigen::Index i = 0; i < count; ++i) put(line, "{}{}", i == 0 ? "" : ",", values[i]);
 }
 
-bool is_finite(const TrackObservation& z) {
-  return std::isfinite(z.t) && z.pixel.allFinite() && z.noise.is_valid();
-}
+bool is_finite(const TrackObservation& z) { return std::isfinite(z.t) && z.pixel.allFinite() && z.noise.is_valid(); }
 
 void put_newest(Line& line, const ControlState& state) {
   const Eigen::Quaterniond& q = state.T.q;
@@ -59,9 +57,8 @@ int write_batch(Line& line, const TrackBatch& batch) {
   });
   if (!std::ranges::all_of(finite, [](const TrackObservation& z) { return z.noise.is_isotropic(); })) {
     put(line, ",\"covariances\":");
-    put_list(line, finite, [&](const TrackObservation& z) {
-      put(line, "[{},{},{}]", z.noise.xx(), z.noise.xy(), z.noise.yy());
-    });
+    put_list(line, finite,
+             [&](const TrackObservation& z) { put(line, "[{},{},{}]", z.noise.xx(), z.noise.xy(), z.noise.yy()); });
   }
   put(line, ",\"ended\":");
   put_list(line, batch.ended, [&](const TrackEnd& end) { put(line, "[{},{}]", end.track, end.t); });

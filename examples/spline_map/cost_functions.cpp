@@ -72,9 +72,8 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
   const Matrix3 Rt = T.R().transpose();
   const Vector3 local = Rt * (landmark - T.p);
   const bool visible = local.z() > kNearestDepth;
-  residual =
-      visible ? Vector2(whitening_ * Vector2(camera_.project(local) - pixel_))
-              : Vector2::Constant(2.0 * whitening_.inverse_sigma() * camera_.fx);
+  residual = visible ? Vector2(whitening_ * Vector2(camera_.project(local) - pixel_))
+                     : Vector2::Constant(2.0 * whitening_.inverse_sigma() * camera_.fx);
   const Matrix23 projection = visible ? Matrix23(whitening_ * camera_.project_jacobian(local)) : Matrix23::Zero();
   const Matrix23 by_rotation = projection * so3::hat(local), by_landmark = projection * Rt;
   for (std::size_t j = 0; j < 4; ++j) {

@@ -73,9 +73,10 @@ void Options::declare(OptionSet& set) {
   set.add("template_learning", tracker.template_learning, "what an event adds to its tracker's template")
       .range(0.0, 1.0);
   set.add("sigma", sigma, "standard deviation of an observation, usually [px]").range(1e-6, 1e6);
-  set.add("score_covariance", score_covariance,
-          "each observation has a covariance, from how its hypotheses' scores fall along each direction from where they "
-          "are highest, against how they usually do: half to three times sigma; false: all are the same");
+  set.add(
+      "score_covariance", score_covariance,
+      "each observation has a covariance, from how its hypotheses' scores fall along each direction from where they "
+      "are highest, against how they usually do: half to three times sigma; false: all are the same");
   set.add("place", place, {"new_state", "midpoint", "refined"},
           "where a tracker that changes its state is observed: at the new state, which leads by half a step; half-way "
           "between the old and the new one; where a paraboloid through its hypotheses' scores is highest");

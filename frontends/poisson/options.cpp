@@ -58,9 +58,10 @@ void Options::declare(OptionSet& set) {
   set.add("covariance", covariance,
           "an observation states what its events leave as a covariance: little across an edge, much along it; off: the "
           "same in all directions, that of the least known one");
-  set.add("neighbours", neighbours,
-          "along an edge, of which its own events say little, a tracker moves as those around it; across it, by its own "
-          "events");
+  set.add(
+      "neighbours", neighbours,
+      "along an edge, of which its own events say little, a tracker moves as those around it; across it, by its own "
+      "events");
   set.add("delay", delay, "observations come this much later than the data [s]").range(0.011, 1.0);
   set.add("outliers", outliers, "tracks end that the back-end rejects as outliers");
   set.group("tracker", tracker, "how a tracker follows its point");

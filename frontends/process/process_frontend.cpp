@@ -146,7 +146,8 @@ void ProcessFrontEnd::send_chunk(double until) {
 
 void ProcessFrontEnd::take_answer(const Json& answer, double until) {
   check_keys(answer, {"observations", "covariances", "ended"});
-  const std::vector<TrackObservation> observed = observations(require(answer, "observations"), find(answer, "covariances"));
+  const std::vector<TrackObservation> observed =
+      observations(require(answer, "observations"), find(answer, "covariances"));
   for (std::size_t i = 0; i < observed.size(); ++i) check_observation(observed[i], until, i);
   observations_.insert(observations_.end(), observed.begin(), observed.end());
   const Json* const found = find(answer, "ended");

@@ -21,7 +21,8 @@ double along_y(const PixelNoise& noise) { return std::sqrt(noise.yy()); }
 
 }  // namespace
 
-TEST_CASE("An observation's noise is the usual one where scores fall as they usually do, and larger where they fall less") {
+TEST_CASE(
+    "An observation's noise is the usual one where scores fall as they usually do, and larger where they fall less") {
   ScoreNoise noise(0.5);
   for (int i = 0; i < 100; ++i) CHECK(noise.next(peak(1.0, 1.0)).sigma() == Approx(0.5).epsilon(0.02));
   CHECK(noise.next(peak(0.5, 0.5)).sigma() == Approx(1.0).epsilon(0.02));
