@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/geometry/types.hpp"
 
 namespace evbench {
@@ -31,8 +33,9 @@ struct Whitening {
 /// and gives that back to the last digit.
 class PixelNoise {
  public:
-  PixelNoise() = default;                                               ///< of 1 px in all directions
-  PixelNoise(double sigma) : xx_(sigma * sigma), yy_(sigma * sigma) {}  // NOLINT: a standard deviation is such noise
+  PixelNoise() = default;   ///< of 1 px in all directions
+  PixelNoise(double sigma)  // NOLINT: a standard deviation is such noise; a negative one is not valid
+      : xx_(sigma * std::abs(sigma)), yy_(xx_) {}
   PixelNoise(double xx, double xy, double yy) : xx_(xx), xy_(xy), yy_(yy) {}
   explicit PixelNoise(const Matrix2& covariance) : PixelNoise(covariance(0, 0), covariance(1, 0), covariance(1, 1)) {}
   static PixelNoise of(const Whitening& whitening);  ///< the inverse of whitening()
