@@ -20,8 +20,10 @@ constexpr int kSettling = 3;              ///< updates after an alternative esti
 /// Searches a better alternative estimate of the recent part or, in turn, of a whole tentative map, with one of two
 /// planes, in turn.
 void GpMap::search_alternatives() {
-  if (!options_.parts.search) map_->pending_checks = 0;
-  if (!options_.parts.search) return;
+  if (!options_.parts.search) {
+    map_->pending_checks = 0;
+    return;
+  }
   if (!is_tentative() && !map_->search) tentative_ = TrackBuffer();
   const double now = graph().states.back().t;
   if (!map_->search && !(now < map_->next_search)) {

@@ -140,7 +140,7 @@ void DriftProblem::take_offsets_away() {
     for (const auto& group : observed_[k].groups()) {
       for (int i = group.begin; i < group.end; ++i) {
         Observation z = observed_[k].all()[index(i)];
-        z.pixel -= offsets_[index(offset_of_[k][index(i)])] / z.whitening.inverse_sigma();
+        z.pixel -= z.whitening.inverse(offsets_[index(offset_of_[k][index(i)])]);
         rest.add(group.landmark, z);
       }
     }

@@ -179,7 +179,6 @@ Feedback BackEndRunner::feedback(const FeedbackNeeds& needs) {
   if (stationary_.is_stationary() && feedback.state == TrackingState::tracking)
     feedback.state = TrackingState::stationary;
   for (ExpectedFeature& feature : feedback.expected) {
-    if (camera_.distortion == DistortionModel::none) break;
     const Matrix2 J = camera_.distortion_jacobian(feature.pixel);
     feature.covariance = J * feature.covariance * J.transpose();
     feature.pixel = camera_.project(camera_.pinhole.ray(feature.pixel));
@@ -190,7 +189,7 @@ Feedback BackEndRunner::feedback(const FeedbackNeeds& needs) {
 
 /// Replaces raw pixels and their noise by those of the ideal pinhole. Observations without one are dropped and counted.
 void BackEndRunner::undistort(TrackBatch& batch) {
-  if (camera_.distortion == DistortionModel::none) return;
+  if (camera_.distortion == DistortionModel::none) return;  // so that not even rounding changes an observation
   left_out_ += std::erase_if(batch.observations, [&](TrackObservation& z) {
     const std::optional<Vector2> pixel = camera_.undistort(z.pixel);
     if (!pixel) return true;

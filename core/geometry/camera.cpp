@@ -110,6 +110,7 @@ std::optional<Vector2> Camera::undistort(const Vector2& raw) const {
 }
 
 Matrix2 Camera::distortion_jacobian(const Vector2& ideal) const {
+  if (distortion == DistortionModel::none) return Matrix2::Identity();
   const Vector2 focal(pinhole.fx, pinhole.fy);
   const Vector2 n = pinhole.ray(ideal).head<2>();
   return focal.asDiagonal() * bend(distortion, n, coefficients).jacobian * focal.cwiseInverse().asDiagonal();

@@ -51,6 +51,23 @@ TEST_CASE("A pixel outside the range of the lens model has no undistorted pixel"
   CHECK_FALSE(davis(DistortionModel::equidistant).undistort({5000.0, 5000.0}));
 }
 
+TEST_CASE("The Jacobian of the distortion equals central differences, and is exactly 1 without a lens") {
+  constexpr double kStep = 1e-4;  // [px]
+  for (const DistortionModel model : {DistortionModel::radial_tangential, DistortionModel::equidistant}) {
+    const Camera camera = davis(model);
+    const auto raw = [&](const Vector2& ideal) { return camera.project(camera.pinhole.ray(ideal)); };
+    for (const Vector2 ideal : {Vector2(10.0, 15.0), Vector2(130.0, 110.0), Vector2(220.0, 40.0)}) {
+      Matrix2 differences;
+      for (Eigen::Index axis = 0; axis < 2; ++axis) {
+        const Vector2 step = kStep * Vector2::Unit(axis);
+        differences.col(axis) = (raw(ideal + step) - raw(ideal - step)) / (2.0 * kStep);
+      }
+      CHECK((camera.distortion_jacobian(ideal) - differences).norm() < 1e-6);
+    }
+  }
+  CHECK(davis(DistortionModel::none).distortion_jacobian({10.0, 15.0}) == Matrix2::Identity());
+}
+
 TEST_CASE("The Jacobian of the projection equals central differences") {
   const PinholeCamera camera = davis(DistortionModel::none).pinhole;
   Random random(1);

@@ -23,8 +23,14 @@ struct Whitening {
     result.row(1) = yx * rows.row(0) + yy * rows.row(1);
     return result;
   }
+  /// The residual [px] that has this whitened one.
+  Vector2 inverse(const Vector2& whitened) const {
+    const double x = whitened.x() / xx;
+    return {x, (whitened.y() - yx * x) / yy};
+  }
   /// The geometric mean over all directions [1/px].
   double inverse_sigma() const;
+  bool is_valid() const { return xx > 0.0 && yy > 0.0 && std::isfinite(xx + yy) && std::isfinite(yx); }
   Whitening scaled(double factor) const { return {factor * xx, factor * yx, factor * yy}; }
   bool operator==(const Whitening&) const = default;
 };

@@ -37,6 +37,8 @@ TEST_CASE("A covariance comes back, its whitening is its inverse's root, and sig
   CHECK((W.transpose() * W).isApprox(covariance.inverse(), 1e-12));
   CHECK(noise.sigma() == Approx(std::pow(covariance.determinant(), 0.25)));
   CHECK(noise.whitening().inverse_sigma() == Approx(1.0 / noise.sigma()));
+  const Vector2 error(0.4, -0.9);
+  CHECK(noise.whitening().inverse(noise.whitening() * error).isApprox(error, 1e-12));
   CHECK(PixelNoise::of(noise.whitening()).covariance().isApprox(covariance, 1e-12));
 }
 
@@ -57,4 +59,7 @@ TEST_CASE("What is not positive definite or not finite is not valid noise") {
   CHECK_FALSE(PixelNoise(matrix(1.0, 2.0, 1.0)).is_valid());
   CHECK_FALSE(PixelNoise(matrix(-1.0, 0.0, 1.0)).is_valid());
   CHECK_FALSE(PixelNoise(matrix(std::nan(""), 0.0, 1.0)).is_valid());
+  CHECK(Whitening(2.0, -0.5, 1.0).is_valid());
+  CHECK_FALSE(Whitening(2.0, std::nan(""), 1.0).is_valid());
+  CHECK_FALSE(Whitening(0.0).is_valid());
 }

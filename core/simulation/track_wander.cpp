@@ -18,7 +18,7 @@ void add_wander(std::span<TrackObservation> observations, double deviation, doub
     const double kept = begins ? 0.0 : std::exp((now.t - z.t) / time);
     now = {z.t, kept * now.value + deviation * std::sqrt(1.0 - kept * kept) * normal()};
     z.pixel += now.value;
-    z.noise = std::hypot(z.noise.sigma(), deviation);
+    z.noise = z.noise + deviation;
   }
 }
 

@@ -64,7 +64,7 @@ bool Engine::add_observation(int landmark, const Observation& observation) {
 
 bool Engine::insert(int landmark, const Observation& observation) {
   const bool sound = std::isfinite(observation.t) && observation.pixel.allFinite() &&
-                     std::isfinite(observation.whitening.inverse_sigma()) && graph_.landmarks[index(landmark)].alive;
+                     observation.whitening.is_valid() && graph_.landmarks[index(landmark)].alive;
   if (!sound || factorisation_.is_marginalised(landmark)) return false;
   const int k = graph_.interval_of(observation.t);
   if (k <= factorisation_.base() || !graph_.add_observation(landmark, observation)) return false;
