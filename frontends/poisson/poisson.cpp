@@ -100,6 +100,7 @@ void Poisson::on_tick() {
 void Poisson::expect_neighbours() {
   constexpr double kDepth = 0.2;   // share of a neighbour's velocity that may be due to its depth
   constexpr double kSlow = 5.0;    // [px/s] by which it may differ, however slow it is
+  constexpr double kAgain = 2.0;   // factor of the variance: from tick to tick neighbours say much the same
   constexpr double kReach = 0.15;  // standard deviation of the distance to neighbours, as a share of the width
   const auto differing = [](const Vector2& velocity) -> Matrix2 {
     const double other = kDepth * velocity.norm() + kSlow;
@@ -127,7 +128,7 @@ void Poisson::expect_neighbours() {
     }
     const Matrix2 covariance = information.inverse();
     const Vector2 velocity = covariance * sum;
-    tracks_[i].tracker.expect(velocity, covariance + differing(velocity));
+    tracks_[i].tracker.expect(velocity, kAgain * (covariance + differing(velocity)));
   }
 }
 
