@@ -56,7 +56,7 @@ TEST_CASE("The Jacobian of the distortion equals central differences, and is exa
   for (const DistortionModel model : {DistortionModel::radial_tangential, DistortionModel::equidistant}) {
     const Camera camera = davis(model);
     const auto raw = [&](const Vector2& ideal) { return camera.project(camera.pinhole.ray(ideal)); };
-    for (const Vector2 ideal : {Vector2(10.0, 15.0), Vector2(130.0, 110.0), Vector2(220.0, 40.0)}) {
+    for (const Vector2& ideal : {Vector2(10.0, 15.0), Vector2(130.0, 110.0), Vector2(220.0, 40.0)}) {
       Matrix2 differences;
       for (Eigen::Index axis = 0; axis < 2; ++axis) {
         const Vector2 step = kStep * Vector2::Unit(axis);
