@@ -120,6 +120,11 @@ class Commands(Repository):
         self.assertIn("- 0", failure)
         self.assertNotIn("~ 50", failure)
 
+    def test_progress_of_a_slow_machine_is_no_output(self):
+        self.assertEqual(self.failures("```console\n$ echo 'results/a  6 of 9 done'; echo b\nb\n```\n"), [])
+        self.assertEqual(self.failures("```console\n$ echo 'a  6 of 9 done'\na  6 of 9 done\n```\n"), [])
+        self.assertTrue(self.failures("```console\n$ echo '9 runs, 6 of them failed'\nb\n```\n"))
+
     def test_a_command_without_output_prints_nothing(self):
         self.assertTrue(self.failures("```console\n$ echo a\n```\n"))
         self.assertEqual(self.failures("```console\n$ true\n\n```\n"), [])

@@ -8,6 +8,7 @@
 
 #include "backends/gp_map/earlier_hypothesis.hpp"
 #include "backends/gp_map/gp_map.hpp"
+#include "backends/gp_map/map_validation.hpp"
 #include "core/support/seconds_since.hpp"
 
 // The final estimate: with all data known, the parameters and the whole trajectory are estimated once more.
@@ -44,6 +45,7 @@ void GpMap::finish() {
   context_.log(fmt::format("final estimate: cost {:.2f} after {:.2f}, {} iterations{}", summary.final_cost,
                            summary.initial_cost, summary.iterations, summary.converged ? "" : ", not converged"));
   add_record(graph().states.back().t, seconds_since(start), summary.iterations, summary.final_cost);
+  validate_map();
   record_final_prior();
 }
 
@@ -74,6 +76,20 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
     if (settled && round > 0) break;  // the estimated parameters no longer change the estimate
   }
   return map_->engine.optimise(options_.final_iterations, learns ? kEstimated : kFixed);
+}
+
+/// An estimate that its own data contradict says so. Both halves of a wrong map may agree, though, where most tracks
+/// are wrong in the same way.
+void GpMap::validate_map() {
+  const ValidationOptions& validation = options_.validation;
+  if (!validation.enabled || monitor_.lost()) return;
+  const std::optional<double> difference = difference_of_halves(graph(), validation);
+  if (!difference) return;
+  const std::string words = fmt::format("two halves of the map disagree by {:.2g} % of the path", 100.0 * *difference);
+  context_.log("final estimate: " + words);
+  if (*difference > validation.disagreement) {
+    monitor_.doubt(graph().states.front().t, std::min(graph().states.back().t, until_), words);
+  }
 }
 
 /// Tests whether near and far are swapped in the initial map, which little motion does not show; an older map has seen

@@ -122,6 +122,7 @@ class GpMap : public BackEnd {
   void publish_recent(double t);
   Engine::OptimiseSummary estimate_everything();
   void test_depth_reversal();
+  void validate_map();
   void reject_outliers(const NoiseLearner& noise, const TimeSpan& span);
   void truncate_track(int landmark, double from);
   void estimate_track_noise(const NoiseLearner& noise, const TimeSpan& span);

@@ -69,6 +69,17 @@ void HealthOptions::declare(OptionSet& set) {
       .range(1);
 }
 
+void ValidationOptions::declare(OptionSet& set) {
+  set.add("enabled", enabled,
+          "at the end each half of the landmarks estimates the trajectory alone; with a lag there is no such test");
+  set.add(
+         "disagreement", disagreement,
+         "root mean square distance of both from the whole trajectory, as a share of the path, above which the run "
+         "is degraded")
+      .above(0.0);
+  set.add("iterations", iterations, "of each half, at most").range(1, 1000);
+}
+
 void PartsOptions::declare(OptionSet& set) {
   set.add("leverage", leverage, "landmarks that are much nearer than the scene get larger sigmas");
   set.add("outliers", outliers, "tracks with large errors are rejected, drifting ones from where they drift");
@@ -106,6 +117,7 @@ void Options::declare(OptionSet& set) {
       .above(0.0);
   set.group("map", map, "landmarks");
   set.group("health", health, "degraded and lost");
+  set.group("validation", validation, "doubt about the final estimate");
   set.group("parts", parts, "switches, to measure what each part is worth");
   set.add("lag", lag,
           "control states older than this are marginalised, for endless streams in bounded memory [s]; 0: full "

@@ -55,6 +55,15 @@ struct HealthOptions {
 };
 
 /// Parts of the back-end that can be left out, each to measure what it is worth.
+/// Whether the final estimate is to be trusted (map_validation.hpp).
+struct ValidationOptions {
+  bool enabled = true;
+  double disagreement = 0.01;
+  int iterations = 30;
+
+  void declare(OptionSet& set);
+};
+
 struct PartsOptions {
   bool leverage = true;
   bool outliers = true;
@@ -85,6 +94,7 @@ struct Options {
   MapOptions map;
   HealthOptions health;
   PartsOptions parts;
+  ValidationOptions validation;
   double lag = 0.0;
   bool per_observation = false;
   int final_iterations = 30;

@@ -36,6 +36,12 @@ void TrackingMonitor::recovered(double since) {
   alone_since_.reset();
 }
 
+void TrackingMonitor::doubt(double from, double to, const std::string& reason) {
+  if (lost()) return;
+  in_degraded_ = false;
+  degrade(from, to, reason);
+}
+
 void TrackingMonitor::lose(double t, const std::string& reason) {
   status_.state = RunState::lost;
   status_.reason = reason;

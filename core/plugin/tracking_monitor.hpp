@@ -28,6 +28,9 @@ class TrackingMonitor {
   /// Reports a new map that determines the motion from `since` [s] on: the current degraded span ends there.
   void recovered(double since);
 
+  /// Reports that the estimate between two times [s] is doubtful although observations support it.
+  void doubt(double from, double to, const std::string& reason);
+
   /// Reports that the estimate cannot continue after t [s].
   void lose(double t, const std::string& reason);
 

@@ -46,3 +46,18 @@ TEST_CASE("A new map ends the degraded span at its beginning and restarts the pa
   CHECK_FALSE(monitor.lost());
   CHECK(monitor.status().degraded.size() == 2);
 }
+
+TEST_CASE("A doubtful estimate is degraded with the reason, and a lost one stays lost") {
+  TrackingMonitor monitor(1.0);
+  monitor.observe(0.0, 0.1, Support::weak, "few");
+  monitor.doubt(0.0, 3.0, "halves differ");
+  CHECK(monitor.status().state == RunState::degraded);
+  CHECK(monitor.status().reason == "few");  // what came first
+  REQUIRE(monitor.status().degraded.size() == 2);
+  CHECK(monitor.status().degraded[1].reason == "halves differ");
+  CHECK(monitor.status().degraded[1].to == 3.0);
+  monitor.lose(2.0, "nothing is seen");
+  monitor.doubt(0.0, 3.0, "halves differ");
+  CHECK(monitor.status().state == RunState::lost);
+  CHECK(monitor.status().reason == "nothing is seen");
+}
