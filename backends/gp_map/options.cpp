@@ -72,10 +72,9 @@ void HealthOptions::declare(OptionSet& set) {
 void ValidationOptions::declare(OptionSet& set) {
   set.add("enabled", enabled,
           "at the end each half of the landmarks estimates the trajectory alone; with a lag there is no such test");
-  set.add(
-         "disagreement", disagreement,
-         "root mean square distance of both from the whole trajectory, as a share of the path, above which the run "
-         "is degraded")
+  set.add("disagreement", disagreement,
+          "root mean square distance of both from the whole trajectory, as a share of the path, above which the run "
+          "is degraded")
       .above(0.0);
   set.add("iterations", iterations, "of each half, at most").range(1, 1000);
 }
