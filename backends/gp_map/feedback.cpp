@@ -67,7 +67,7 @@ std::vector<ExpectedFeature> GpMap::expected_features() {
   return result;
 }
 
-/// Tracks whose landmarks are in view or may come into view before the next state. Computed once a state: a long
+/// Tracks whose landmarks are in view or may come into view before the next state. Computed once a step: a long
 /// recording has many more landmarks.
 const std::vector<TrackId>& GpMap::nearly_in_view() {
   constexpr double kMargin = 0.2;  // [rad] beyond the rotation by the newest velocity
@@ -95,12 +95,12 @@ const std::vector<TrackId>& GpMap::nearly_in_view() {
   return tracks;
 }
 
-/// Covariance of a landmark's image, without the motion since the newest state. Computed once a state: it is expensive,
+/// Covariance of a landmark's image, without the motion since the newest state. Computed once a step: it is expensive,
 /// and hardly changes before the next.
 const std::optional<Matrix2>& GpMap::image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
                                                       const Matrix23& J_landmark) {
-  if (track.expected_at == graph().states.size()) return track.image_covariance;
-  track.expected_at = graph().states.size();
+  if (track.expected_at == map_->steps) return track.image_covariance;
+  track.expected_at = map_->steps;
   track.image_covariance.reset();
   if (!track.ended) {
     track.covariance.reset();
@@ -116,8 +116,8 @@ const std::optional<Matrix2>& GpMap::image_covariance(Track& track, const Eigen:
 }
 
 const std::optional<Matrix12>& GpMap::newest_covariance() {
-  if (map_->newest_covariance.first != graph().states.size()) {
-    map_->newest_covariance = {graph().states.size(), map_->engine.covariance(graph().states.back().t)};
+  if (map_->newest_covariance.first != map_->steps) {
+    map_->newest_covariance = {map_->steps, map_->engine.covariance(graph().states.back().t)};
   }
   return map_->newest_covariance.second;
 }

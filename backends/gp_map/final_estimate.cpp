@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/earlier_hypothesis.hpp"
 #include "backends/gp_map/gp_map.hpp"
 #include "backends/gp_map/map_validation.hpp"
 #include "core/support/seconds_since.hpp"
@@ -58,12 +57,6 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
   constexpr double kRoughly = 1e-4, kEstimated = 1e-6, kFixed = 1e-9;  // estimated parameters are not more accurate
   map_->engine.optimise(kIterationsARound, kRoughly);
   if (options_.parts.reversal && is_tentative()) test_depth_reversal();
-  auto other =
-      options_.parts.earlier ? try_earlier_hypotheses(map_->engine, options_.health.min_landmarks) : std::nullopt;
-  if (other) {
-    context_.log("found a better alternative estimate of the past with the data after it");
-    map_->engine = std::move(*other);
-  }
   for (int round = 0; round < rounds; ++round) {
     if (options_.learn.noise) {
       map_->noise = learn_noise(graph());

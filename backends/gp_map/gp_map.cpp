@@ -55,12 +55,12 @@ void GpMap::step(double t) {
     add_observations();
     drop_guessed_depths();
     add_landmarks();
-    if (options_.parts.leverage) bound_leverage();
+    bound_leverage();
     optimise();
     check_reappeared();
     learn();
     search_alternatives();
-    map_->nearly_in_view.reset();
+    map_->end_step(options_.health.min_landmarks);
     confirm_map();
     if (options_.parts.rejection && is_rejected()) {
       reinitialise();
@@ -110,15 +110,16 @@ void GpMap::observe_landmark(Track& track, const TrackObservation& z) {
   const std::vector<int>& intervals = graph().landmarks[index(track.landmark)].intervals;
   const int last = intervals.empty() ? 0 : intervals.back();
   const bool reappears = track.ended && last > 0 && z.t - graph().states[index(last)].t > kGone;
-  if (!continues_landmark(track)) {
+  if (!continue_landmark(track)) {
     split_track(z.track);
   } else if (reappears && !map_->reappeared.contains(z.track)) {
     map_->reappeared[z.track] = {track.landmark, z.t, z.pixel, last};
   }
 }
 
-/// Does the track continue its landmark? A re-acquired one does within the budget of returns.
-bool GpMap::continues_landmark(const Track& track) {
+/// Lets the track continue its landmark, a re-acquired one if the budget of returns allows it, of which it takes its
+/// share. False: it can't.
+bool GpMap::continue_landmark(const Track& track) {
   if (map_->engine.is_marginalised(track.landmark)) return false;
   const auto& seen = graph().landmarks[index(track.landmark)].intervals;
   const int newest = static_cast<int>(graph().states.size()) - 1;

@@ -59,8 +59,8 @@ class GpMap : public BackEnd {
     bool ended = false;
     bool mismatched = false;                       ///< until it ends, it does not show its landmark
     std::optional<Matrix3> covariance = {};        ///< of the landmark; computed on demand after the track's end
-    std::optional<Matrix2> image_covariance = {};  ///< of its expected image [px²], computed at
-    std::size_t expected_at = 0;                   ///< this number of states
+    std::optional<Matrix2> image_covariance = {};  ///< of its expected image [px²], computed in
+    std::size_t expected_at = 0;                   ///< this step of the map
   };
 
   /// The position of a track's landmark, with the prior on it.
@@ -99,7 +99,7 @@ class GpMap : public BackEnd {
   void follow_observations(double t, double ahead);
   void take(const TrackObservation& z);
   void observe_landmark(Track& track, const TrackObservation& z);
-  bool continues_landmark(const Track& track);
+  bool continue_landmark(const Track& track);
   void split_track(TrackId id);
   void become_landmark(TrackId track, int landmark);
   bool is_outlier(int landmark);
@@ -116,7 +116,7 @@ class GpMap : public BackEnd {
   const std::optional<Matrix2>& image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
                                                  const Matrix23& J_landmark);
   int landmarks_in_view() const;
-  bool is_tentative() const { return !(graph().states.back().t > map_->tentative_until); }
+  bool is_tentative() const { return map_->moved < MapEstimate::kTentative; }
   bool is_pending() const { return is_tentative() && !map_->confirmed; }
   void publish_newest(double t);
   void publish_recent(double t);

@@ -56,7 +56,7 @@ void GpMap::adopt(const RecentHypothesis& other) {
   other.place_in(map_->engine);
   const auto known = static_cast<int>(map_->known.size());
   if (other.first == 0) recall_rejected();
-  if (options_.parts.leverage) bound_leverage();
+  bound_leverage();
   for (int step = 0; step < kSettling; ++step) map_->last_update = map_->engine.update();
   for (int j = known; options_.parts.outliers && j < std::ssize(map_->known); ++j) {
     if (is_outlier(j)) become_outlier(j);

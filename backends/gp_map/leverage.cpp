@@ -7,7 +7,6 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kNear = 1.5;         ///< times nearer than the scene's median depth: bounded from there on
 constexpr double kLargest = 100.0;    ///< largest bound: such a landmark has no influence
 constexpr double kBoundChange = 1.2;  ///< factor by which a bound must change to be updated
 
@@ -20,13 +19,15 @@ constexpr double kBoundChange = 1.2;  ///< factor by which a bound must change t
 /// suffice: translation and rotation move everything at the same distance by nearly the same amount, so a few near
 /// landmarks decide between the two.
 void GpMap::bound_leverage() {
+  const double near = options_.map.leverage;
+  if (near == 0.0) return;
   const double median = median_depth();
   const SE3 T_camera_world = graph().states.back().T.inverse();
   std::vector<int> changed;
   for (const auto& group : graph().intervals.back().groups()) {
     const double depth = (T_camera_world * graph().landmarks[index(group.landmark)].position).z();
     if (!(depth > 0.0)) continue;
-    const double nearness = std::max(1.0, median / (kNear * depth));
+    const double nearness = std::max(1.0, median / (near * depth));
     const double bound = std::min(kLargest, nearness * nearness);
     double& present = map_->known[index(group.landmark)].leverage;
     if (bound < kBoundChange * present && bound > present / kBoundChange) continue;

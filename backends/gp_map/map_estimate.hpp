@@ -23,8 +23,9 @@ namespace evbench::gp_map {
 /// Everything that belongs to one map: the problem with its present estimate, the tracks of its landmarks, and the
 /// estimated parameters. It begins with an initial map, and ends if that is rejected.
 struct MapEstimate {
-  static constexpr double kTentative = 5.0;    ///< [s] in which the whole map may be replaced, and no track is rejected
-  static constexpr double kFirstSearch = 0.7;  ///< [s] of data before the first hypothesis search
+  static constexpr double kTentative = 5.0;      ///< [s] of motion in which the whole map may be replaced, and no track
+                                                 ///< is rejected
+  static constexpr double kFirstSearch = 0.7;    ///< [s] of data before the first hypothesis search
   static constexpr double kSmoothedReach = 1.0;  ///< [s] that smoothed re-estimation reaches back while running
   static constexpr int kPlanes = 2;              ///< plane hypotheses, searched in turn
 
@@ -39,7 +40,6 @@ struct MapEstimate {
                    : std::optional<RecentPrior>(std::in_place, options.learn.window, options.learn.memory,
                                                 engine.graph().qc)),
         next_smoothed_learning(engine.graph().states.front().t + kSmoothedReach),
-        tentative_until(engine.graph().states.back().t + kTentative),
         next_search(engine.graph().states.front().t + kFirstSearch),
         next_jump_search(engine.graph().states.back().t) {}
 
@@ -52,8 +52,19 @@ struct MapEstimate {
     double sigma_scale() const { return std::max(noise, leverage); }
   };
 
+  /// After the newest state was estimated. `enough`: tracks whose observations show fully that the camera moves.
+  void end_step(int enough) {
+    const FactorGraph& graph = engine.graph();
+    const std::size_t n = graph.states.size();
+    const double share = static_cast<double>(graph.intervals.back().groups().size()) / enough;
+    moved += std::min(share, 1.0) * (graph.states[n - 1].t - graph.states[n - 2].t);
+    ++steps;
+    nearly_in_view.reset();
+  }
+
   // The problem.
   Engine engine;
+  std::size_t steps = 1;  ///< one a control state
   UpdateSummary last_update;
   ObservationFollower follower;
   std::vector<std::pair<int, Observation>> new_observations;  ///< of landmarks, not in the engine yet
@@ -74,7 +85,7 @@ struct MapEstimate {
   double next_smoothed_learning;       ///< [s]
 
   // Checks of the map: hypothesis_search.cpp.
-  double tentative_until;                  ///< [s]
+  double moved = 0.0;                      ///< [s] that it has seen motion for: an event camera at rest sees nothing
   double next_search;                      ///< [s] of the next hypothesis search
   int searches = 0;                        ///< number of those that were begun
   std::optional<HypothesisSearch> search;  ///< in progress
@@ -85,7 +96,7 @@ struct MapEstimate {
   double next_jump_search;                     ///< [s] of the next test for a pose jump
 
   // For the front-end: feedback.cpp.
-  std::pair<std::size_t, std::optional<Matrix12>> newest_covariance;  ///< at this number of states
+  std::pair<std::size_t, std::optional<Matrix12>> newest_covariance;  ///< in this step
   std::optional<std::vector<TrackId>> nearly_in_view;                 ///< at the newest state
   std::vector<TrackId> ended_landmarks;                               ///< tracks that have ended in the last batch
 };

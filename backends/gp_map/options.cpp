@@ -36,6 +36,10 @@ void MapOptions::declare(OptionSet& set) {
           "stays twice as large [sigmas of such means, larger where trackers drift; of those over 0.15 s, larger still "
           "where their errors have longer tails than normal ones]")
       .above(0.0);
+  set.add("leverage", leverage,
+          "landmarks that are more than so many times nearer than the scene's median depth get larger sigmas, that grow "
+          "with the square of their nearness; 0: none")
+      .range(0.0, 1000.0);
   set.add("returns", returns,
           "maximum number of landmarks that are out of view at one time and are re-acquired later: further re-acquired "
           "tracks become new landmarks with a prior at the old place")
@@ -80,7 +84,6 @@ void ValidationOptions::declare(OptionSet& set) {
 }
 
 void PartsOptions::declare(OptionSet& set) {
-  set.add("leverage", leverage, "landmarks that are much nearer than the scene get larger sigmas");
   set.add("outliers", outliers, "tracks with large errors are rejected, drifting ones from where they drift");
   set.add("track_noise", track_noise, "a track that is noisier than most gets larger sigmas; not without learn.noise");
   set.add("convergence", convergence, "the newest state takes more steps while most tracks have large errors");
@@ -90,7 +93,6 @@ void PartsOptions::declare(OptionSet& set) {
   set.add("pose_jump", pose_jump, "a jump of the pose that most re-acquired landmarks show is corrected");
   set.add("reassociations", reassociations, "re-acquired landmarks that stay far off their place are rejected");
   set.add("reversal", reversal, "the final estimate tests whether near and far are swapped in a young map");
-  set.add("earlier", earlier, "the final estimate searches the past for alternatives, with the data after it");
 }
 
 void Options::declare(OptionSet& set) {

@@ -28,6 +28,7 @@ struct MapOptions {
   double patience = 0.0;
   double depth_sigma = 0.5;
   double outlier_threshold = 5.0;
+  double leverage = 3.0;
   int returns = 120;
 
   void declare(OptionSet& set);
@@ -65,7 +66,6 @@ struct ValidationOptions {
 };
 
 struct PartsOptions {
-  bool leverage = true;
   bool outliers = true;
   bool track_noise = true;
   bool convergence = true;
@@ -75,7 +75,6 @@ struct PartsOptions {
   bool pose_jump = true;
   bool reassociations = true;
   bool reversal = true;
-  bool earlier = true;
 
   void declare(OptionSet& set);
 };
