@@ -102,6 +102,7 @@ class GpMap : public BackEnd {
   bool continue_landmark(const Track& track);
   void split_track(TrackId id);
   void become_landmark(TrackId track, int landmark);
+  bool is_reappearing(int landmark) const;
   bool is_outlier(int landmark);
   void become_outlier(int landmark);
   bool end_track_of(int landmark, Track::Role role);

@@ -22,16 +22,20 @@ constexpr double kWellSeen = 1.5;     ///< error of a landmark's first observati
 }  // namespace
 
 /// Removes landmarks of the newest interval whose error at the last optimum was too large compared with all tracks.
-/// Newer observations do not count: their distance from an extrapolated pose depends on the motion first.
+/// Newer observations do not count: their distance from an extrapolated pose depends on the motion first. Whether a
+/// re-acquired track shows its landmark is check_reappeared()'s to say.
 void GpMap::remove_outliers() {
   std::vector<int> outliers;
   for (const auto& group : graph().intervals.back().groups()) {
-    if (is_outlier(group.landmark)) outliers.push_back(group.landmark);
+    if (!is_reappearing(group.landmark) && is_outlier(group.landmark)) outliers.push_back(group.landmark);
   }
   // If these are most tracks, the motion is wrong.
   if (2 * outliers.size() > graph().intervals.back().groups().size()) return;
   for (const int landmark : outliers) become_outlier(landmark);
 }
+
+/// Is it being checked whether a re-acquired track shows it?
+bool GpMap::is_reappearing(int landmark) const { return map_->reappeared.contains(map_->known[index(landmark)].track); }
 
 bool GpMap::is_outlier(int landmark) {
   const FactorGraph::Landmark& l = graph().landmarks[index(landmark)];

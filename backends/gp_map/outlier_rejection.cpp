@@ -86,7 +86,8 @@ std::vector<int> outliers(const FactorGraph& graph, const LandmarkErrors& errors
 
 /// By the errors in this span: outliers are removed, and a drifted track keeps its landmark until it drifted.
 void GpMap::reject_outliers(const NoiseLearner& noise, const TimeSpan& span) {
-  const LandmarkErrors errors = errors_in(graph(), noise, span, span.from, TimeSpan().from);
+  LandmarkErrors errors = errors_in(graph(), noise, span, span.from, TimeSpan().from);
+  std::erase_if(errors, [this](const auto& entry) { return is_reappearing(entry.first); });
   const double far = tail_of(errors) * options_.map.outlier_threshold;
   const double threshold = span.is_everything() ? far : kHasty * far;
   for (const int outlier : outliers(graph(), errors, threshold, span)) {
