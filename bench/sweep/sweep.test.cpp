@@ -164,6 +164,22 @@ TEST_CASE("What is drawn for a run depends on its seed alone, is a column, and g
   CHECK_THROWS_WITH(plan(folder, "loop.json"), ContainsSubstring("without a base of its own"));
 }
 
+TEST_CASE("What the command line sets is refused where an axis would set it again") {
+  const TemporaryFolder folder;
+  folder.write("c.json", dump_json(tiny_config()));
+  folder.write("s.json", R"({"config": "c.json",
+                             "axes": [{"name": "which", "overlays": {"a": {"backend": {"type": "gp_map"}}}}]})");
+  Plugins plugins = known_plugins();
+  const auto read = [&](const std::vector<std::string>& overrides, const std::vector<std::string>& over) {
+    return read_sweep(folder.file("s.json"), overrides, over, plugins);
+  };
+  CHECK_THROWS_WITH(read({"backend.qc_scale=2"}, {}),
+                    ContainsSubstring("--set backend.qc_scale=2: the axis \"which\" of ") &&
+                        ContainsSubstring("sets \"backend\" afterwards, and it would be lost"));
+  CHECK_THROWS_WITH(read({"seed=3"}, {"seed=1..2"}), ContainsSubstring("--set seed=3: the axis \"seed\""));
+  CHECK_NOTHROW(read({"seed=3", "frontend.sigma=1"}, {"backend.qc_scale=1,2"}));
+}
+
 TEST_CASE("A sweep does missing runs: those of a new value, damaged ones on request, and none for a new name",
           "[long]") {
   const TemporaryFolder folder;

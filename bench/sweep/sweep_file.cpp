@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "bench/experiment.hpp"
@@ -49,8 +50,9 @@ void add_axes(const Json& axes, const std::string& place, Grid& grid) {
   for (std::size_t i = 0; i < axes.size(); ++i) grid.push_back(read_axis(axes[i], fmt::format("{}.{}", place, i)));
 }
 
-/// No axis may override what an earlier one has set: runs would be shown at wrong values.
-void check_axes(const Sweep& sweep, const Grid& grid) {
+/// No axis may override what an earlier one has set, as runs would be shown at wrong values, nor what the command line
+/// sets, "KEY=VALUE", which would be lost in silence.
+void check_axes(const Sweep& sweep, const Grid& grid, std::span<const std::string> given) {
   std::set<std::string> names;
   std::map<std::string, std::string> set_by;  // key, axis
   std::vector<Axis> axes;
@@ -61,6 +63,14 @@ void check_axes(const Sweep& sweep, const Grid& grid) {
       for (std::string& key : value.keys()) keys.insert(std::move(key));
     }
     for (const std::string& key : keys) {
+      for (const std::string& item : given) {
+        const std::string own = item.substr(0, item.find('='));
+        if (own != key && !own.starts_with(key + ".")) continue;
+        throw InputError(fmt::format(
+            "--set {}: the axis \"{}\" of {} sets \"{}\" afterwards, and it would be lost; expected a key that "
+            "no axis sets",
+            item, axis.name, sweep.place, key));
+      }
       for (const auto& [earlier, by] : set_by) {
         if (earlier != key && !earlier.starts_with(key + ".")) continue;
         throw InputError(
@@ -181,7 +191,7 @@ Sweep read_sweep(const std::string& path, const std::vector<std::string>& overri
   for (const std::string& text : over) {
     for (Grid& grid : sweep.grids) grid.push_back({parse_axis(text)});
   }
-  for (const Grid& grid : sweep.grids) check_axes(sweep, grid);
+  for (const Grid& grid : sweep.grids) check_axes(sweep, grid, overrides);
   return sweep;
 }
 
