@@ -12,8 +12,7 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kSearchInterval = 0.15;  ///< [s] least time between hypothesis searches
-constexpr int kSettling = 3;              ///< updates after an alternative estimate is adopted
+constexpr int kSettling = 3;  ///< updates after an alternative estimate is adopted
 
 }  // namespace
 
@@ -27,7 +26,7 @@ void GpMap::search_alternatives() {
   if (!is_tentative() && !map_->search) tentative_ = TrackBuffer();
   const double now = graph().states.back().t;
   if (!map_->search && !(now < map_->next_search)) {
-    map_->next_search = now + kSearchInterval;
+    map_->next_search = now + options_.map.search_interval;
     const auto hypothesis = map_->searches % MapEstimate::kPlanes == 0 ? StructureHypothesis::frontal_plane
                                                                        : StructureHypothesis::dual_plane;
     map_->search =

@@ -36,9 +36,13 @@ void MapOptions::declare(OptionSet& set) {
           "stays twice as large [sigmas of such means, larger where trackers drift; of those over 0.15 s, larger still "
           "where their errors have longer tails than normal ones]")
       .above(0.0);
-  set.add("leverage", leverage,
-          "landmarks that are more than so many times nearer than the scene's median depth get larger sigmas, that grow "
-          "with the square of their nearness; 0: none")
+  set.add(
+         "leverage", leverage,
+         "landmarks that are more than so many times nearer than the scene's median depth get larger sigmas, that grow "
+         "with the square of their nearness; 0: none")
+      .range(0.0, 1000.0);
+  set.add("search_interval", search_interval,
+          "least time between the beginnings of two searches of an alternative estimate [s]")
       .range(0.0, 1000.0);
   set.add("returns", returns,
           "maximum number of landmarks that are out of view at one time and are re-acquired later: further re-acquired "

@@ -29,6 +29,7 @@ struct MapOptions {
   double depth_sigma = 0.5;
   double outlier_threshold = 5.0;
   double leverage = 3.0;
+  double search_interval = 0.15;
   int returns = 120;
 
   void declare(OptionSet& set);
