@@ -79,7 +79,8 @@ void HealthOptions::declare(OptionSet& set) {
 
 void ValidationOptions::declare(OptionSet& set) {
   set.add("enabled", enabled,
-          "at the end each half of the landmarks estimates the trajectory alone; with a lag there is no such test");
+          "at the end each half of the landmarks estimates the trajectory alone; not with a lag or without "
+          "final_iterations");
   set.add("disagreement", disagreement,
           "root mean square distance of both from the whole trajectory, as a share of the path, above which the run "
           "is degraded")
@@ -122,7 +123,7 @@ void Options::declare(OptionSet& set) {
       .above(0.0);
   set.group("map", map, "landmarks");
   set.group("health", health, "degraded and lost");
-  set.group("validation", validation, "doubt about the final estimate");
+  set.group("validation", validation, "whether the final estimate is to be trusted");
   set.group("parts", parts, "switches, to measure what each part is worth");
   set.add("lag", lag,
           "control states older than this are marginalised, for endless streams in bounded memory [s]; 0: full "
