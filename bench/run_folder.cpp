@@ -130,6 +130,11 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
   record.times->backend_ms = step_times(updates);
   record.peak_rss_mib = result.peak_rss_mib;
   record.track_scores = execution.track_scores;
+  record.events = Json::array();
+  for (const RunEvent& event : result.events) {
+    record.events.push_back({{"t", event.t}, {"kind", event.kind}, {"text", event.text}});
+  }
+  record.counters = result.counters.empty() ? Json() : Json(result.counters);
   return record;
 }
 

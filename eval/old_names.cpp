@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -13,8 +14,8 @@ namespace {
 struct OldName {
   const char* part;  ///< of the config: backend, pipeline
   const char* type;  ///< of the plugin; empty: any
-  const char* before;
-  const char* now;
+  const char* before;  ///< a key, or GROUP.KEY
+  const char* now;     ///< likewise
 };
 
 constexpr OldName kKeys[] = {
@@ -23,6 +24,8 @@ constexpr OldName kKeys[] = {
     {"backend", "bundle_adjustment", "frame_motion", "batch_motion"},
     {"backend", "bundle_adjustment", "shortest_frame", "min_batch_duration"},
     {"backend", "bundle_adjustment", "min_track_frames", "min_track_batches"},
+    {"backend", "gp_map", "map.outlier_threshold", "outliers.threshold"},
+    {"backend", "gp_map", "map.returns", "reassociation.returns"},
     {"pipeline", "", "still_after", "stationary_after"},
 };
 
@@ -38,12 +41,29 @@ bool rename(Json& object, const char* before, const char* now) {
   return true;
 }
 
+/// A pointer to KEY or GROUP.KEY.
+Json::json_pointer pointer_to(std::string path) {
+  std::ranges::replace(path, '.', '/');
+  return Json::json_pointer("/" + path);
+}
+
+bool rename_path(Json& part, const char* before, const char* now) {
+  const Json::json_pointer old_place = pointer_to(before), place = pointer_to(now), group = place.parent_pointer();
+  if (!part.contains(old_place) || part.contains(place)) return false;
+  if (part.contains(group) && !part[group].is_object()) return false;
+  part[place] = part[old_place];
+  Json& left = part[old_place.parent_pointer()];
+  left.erase(old_place.back());
+  if (left.empty() && &left != &part) part.erase(old_place.parent_pointer().back());
+  return true;
+}
+
 void rename_keys(Json& part, const char* name, std::vector<std::string>& remarks) {
   if (!part.is_object()) return;
   const Json type = part.value("type", Json());
   for (const OldName& key : kKeys) {
     if (std::string(key.part) != name || (*key.type != '\0' && type != key.type)) continue;
-    if (rename(part, key.before, key.now)) {
+    if (rename_path(part, key.before, key.now)) {
       remarks.push_back(fmt::format("{}.{} is called {} now; the old name is read until the next version", name,
                                     key.before, key.now));
     }

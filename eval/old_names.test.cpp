@@ -22,6 +22,13 @@ TEST_CASE("Old names of options are read, each with a remark, in one back-end an
   CHECK(list == parse_json(R"({"backends": [{"type": "bundle_adjustment", "batch_motion": 3},
                                             {"type": "gp_map", "learn": {"prior": "smoothed"}}]})"));
   CHECK(rename_old_keys(list).empty());
+
+  Json groups = parse_json(R"({"backend": {"type": "gp_map", "map": {"returns": 5, "patience": 1},
+                                           "outliers": {"threshold": 2}}})");
+  CHECK(rename_old_keys(groups) == std::vector<std::string>{"backend.map.returns is called reassociation.returns now; "
+                                                            "the old name is read until the next version"});
+  CHECK(groups == parse_json(R"({"backend": {"type": "gp_map", "map": {"patience": 1}, "outliers": {"threshold": 2},
+                                             "reassociation": {"returns": 5}}})"));
 }
 
 TEST_CASE("An old name is not renamed for another plugin, nor if the present name also exists") {

@@ -194,11 +194,11 @@ SolveReport BundleAdjustment::initialise(int view) {
 void BundleAdjustment::accept(Trial trial, int view) {
   map_ = std::move(trial.map);
   segments_.push_back(trial.segment);
-  context_.log(
-      fmt::format("{:.3f} s: map from views at {:.3f} s and {:.3f} s, parallax {:.2f} deg, {} landmarks, "
-                  "mean error {:.3f} px",
-                  map_.views[at(view)].t, map_.views[at(trial.segment.first)].t, map_.views[at(view)].t,
-                  trial.parallax_deg, trial.good, trial.error));
+  const double t = map_.views[at(view)].t;
+  context_.event({t, "initialised",
+                  fmt::format("map from views at {:.3f} s and {:.3f} s, parallax {:.2f} deg, {} landmarks, mean error "
+                              "{:.3f} px",
+                              map_.views[at(trial.segment.first)].t, t, trial.parallax_deg, trial.good, trial.error)});
   failing_ = false;
   remove_outliers(trial.segment.first);
   map_.triangulate_new(context_.camera, triangulation_options(), {options_.min_track_batches, options_.min_track_time});

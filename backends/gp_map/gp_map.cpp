@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
 
+#include "backends/gp_map/final_estimate.hpp"
 #include "backends/gp_map/problem_graph.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/seconds_since.hpp"
@@ -16,11 +16,9 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 28);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 29);
 
-constexpr double kEvery = 0.3;     ///< [s] between smoothed re-estimations of prior and noise while running
-constexpr double kOneSided = 0.1;  ///< [s] newer motion is observed from one side only
-constexpr double kMemory = 10.0;   ///< [s] before there is a map, tracks are dropped this long after their end
+constexpr double kMemory = 10.0;  ///< [s] before there is a map, tracks are dropped this long after their end
 
 }  // namespace
 
@@ -29,15 +27,14 @@ GpMap::GpMap(const Options& options, const BackEndContext& context)
       context_(context),
       placement_(options.placement),
       initial_map_(options, context.camera),
-      information_share_(RobustLoss(options.loss, options.loss_width).information_share()),
-      monitor_(context.patience) {}
+      tracks_(options.sigma_scale),
+      monitor_(context.patience),
+      information_share_(RobustLoss(options.loss, options.loss_width).information_share()) {}
 
 void GpMap::advance(const TrackBatch& batch) {
   for (const TrackObservation& z : batch.observations) placement_.observe(z);
-  pending_.insert(pending_.end(), batch.observations.begin(), batch.observations.end());
-  ending_.insert(ending_.end(), batch.ended.begin(), batch.ended.end());
+  tracks_.receive(batch);
   until_ = batch.until;
-  if (map_) map_->ended_landmarks.clear();
   while (const std::optional<double> next = placement_.next(until_)) {
     if (options_.per_observation) follow_observations(*next, *next);
     step(*next);
@@ -45,193 +42,129 @@ void GpMap::advance(const TrackBatch& batch) {
   if (options_.per_observation) follow_observations(until_, placement_.upcoming());
 }
 
+/// Algorithm 1, for the control state at t.
 void GpMap::step(double t) {
   if (monitor_.lost()) return;
   const auto start = std::chrono::steady_clock::now();
   take_observations(t);
   if (map_ || initialise(t)) {
-    if (options_.parts.outliers) remove_outliers();
-    extrapolate_state(t);
-    add_observations();
-    drop_guessed_depths();
-    add_landmarks();
-    bound_leverage();
-    optimise();
-    check_reappeared();
+    Estimate& estimate = map_->estimate;
+    map_->outliers.reject_newest(estimate, tracks_);
+    map_->follower.close(estimate.engine, t);
+    if (estimate.now() < t) add_extrapolated_state(estimate.engine, t);
+    for (const auto& [landmark, z] : tracks_.take_observations()) estimate.engine.add_observation(landmark, z);
+    map_->triangulation.drop_guesses(estimate);
+    map_->triangulation.add(estimate, tracks_);
+    map_->leverage.apply(estimate);
+    estimate.update();
+    map_->relaxation.relax(estimate);
+    map_->reassociation.check(estimate, tracks_);
     learn();
     search_alternatives();
-    map_->end_step(options_.health.min_landmarks);
-    confirm_map();
-    if (options_.parts.rejection && is_rejected()) {
+    estimate.end_step();
+    map_->check.follow(tracks_, map_->search.is_exhausted());
+    if (is_rejected()) {
       reinitialise();
     } else {
       check_support();
       publish_recent(t);
-      predict_tracks();
+      predict_next_state();
     }
   }
-  drop_ended_tracks(t);
+  tracks_.drop_ended(t, map_.has_value(), kMemory);
   add_record(t, std::exchange(seconds_since_step_, 0.0) + seconds_since(start), 1, {});
 }
 
-/// Takes the observations up to the new control state and no later ones: the estimate at a time depends on data until
-/// then.
 void GpMap::take_observations(double t) {
-  const auto later = std::ranges::upper_bound(pending_, t, {}, &TrackObservation::t);
-  const auto ending_later = std::ranges::upper_bound(ending_, t, {}, &TrackEnd::t);
-  const auto end = [&](const TrackEnd& ended) {
-    const auto track = tracks_.find(ended.track);
-    if (track == tracks_.end()) return;
-    track->second.ended = true;
-    track->second.mismatched = false;
-  };
-  in_time_order(
-      std::span(pending_.begin(), later), std::span(ending_.begin(), ending_later),
-      [&](const TrackObservation& z) { take(z); }, end);
-  pending_.erase(pending_.begin(), later);
-  ending_.erase(ending_.begin(), ending_later);
-}
-
-void GpMap::take(const TrackObservation& z) {
-  Track& track = tracks_[z.track];
-  if (track.mismatched) return;
-  live_.insert(z.track);
-  if (track.role == Track::Role::landmark) observe_landmark(track, z);
-  track.ended = false;
-  if (track.role == Track::Role::waiting) waiting_.add({&z, 1});
-  if (!tentative_.empty()) tentative_.add({&z, 1});
-  if (track.role == Track::Role::landmark)
-    map_->new_observations.emplace_back(track.landmark, to_observation(z, options_.sigma_scale));
-}
-
-/// An observation of a landmark's track, perhaps of a re-acquired one.
-void GpMap::observe_landmark(Track& track, const TrackObservation& z) {
-  constexpr double kGone = 0.05;  // [s] shortest gap before a re-acquisition
-  const std::vector<int>& intervals = graph().landmarks[index(track.landmark)].intervals;
-  const int last = intervals.empty() ? 0 : intervals.back();
-  const bool reappears = track.ended && last > 0 && z.t - graph().states[index(last)].t > kGone;
-  if (!continue_landmark(track)) {
-    split_track(z.track);
-  } else if (reappears && !map_->reappeared.contains(z.track)) {
-    map_->reappeared[z.track] = {track.landmark, z.t, z.pixel, last};
-  }
-}
-
-/// Lets the track continue its landmark, a re-acquired one if the budget of returns allows it, of which it takes its
-/// share. False: it can't.
-bool GpMap::continue_landmark(const Track& track) {
-  if (map_->engine.is_marginalised(track.landmark)) return false;
-  const auto& seen = graph().landmarks[index(track.landmark)].intervals;
-  const int newest = static_cast<int>(graph().states.size()) - 1;
-  return !track.ended || seen.empty() || seen.back() >= newest || map_->returns.spend(seen.back(), newest + 1);
-}
-
-/// Makes a re-acquired track another landmark, with a prior where its old landmark is expected; the old one stays as it
-/// is. The covariance of the old one counts as independent of the motion since.
-void GpMap::split_track(TrackId id) {
-  Track& track = tracks_.at(id);
-  const std::optional<Matrix3> known = covariance_of_ended(track);
-  if (!known) {
-    track = Track();
-    --map_->tracks;
-    return;
-  }
-  const Vector3 position = graph().landmarks[index(track.landmark)].position;
-  const double sigma = std::sqrt(known->selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff());
-  track = {.role = Track::Role::landmark, .landmark = map_->engine.add_landmark(position, {position, sigma})};
-  map_->known.push_back({.track = id});
+  tracks_.advance_to(t, [this](const TrackObservation& z) { map_->reassociation.observe(map_->estimate, tracks_, z); });
 }
 
 bool GpMap::initialise(double t) {
-  auto map = initial_map_.attempt(waiting_, t);
-  if (!map) return false;
-  tentative_ = waiting_;
-  map_.emplace(std::move(map->graph), options_);
-  for (const TrackId track : map->tracks) become_landmark(track, static_cast<int>(map_->known.size()));
-  context_.log(
-      fmt::format("{:.3f} s: initial map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
-                  graph().states.back().t, graph().landmarks.size(), graph().observation_count(), map->parallax_deg,
-                  graph().states.front().t));
+  auto first = initial_map_.attempt(tracks_.waiting(), t);
+  if (!first) return false;
+  tracks_.remember();
+  const auto rejected = static_cast<int>(counters_[Count::initial_maps_rejected]);
+  map_.emplace(std::move(first->graph), options_, rejected, counters_);
+  for (std::size_t j = 0; j < first->tracks.size(); ++j) tracks_.become_landmark(first->tracks[j], static_cast<int>(j));
+  ++counters_[Count::initial_maps];
+  report("initialised", fmt::format("initial map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
+                                    graph().landmarks.size(), graph().observation_count(), first->parallax_deg,
+                                    graph().states.front().t));
   return true;
-}
-
-void GpMap::extrapolate_state(double t) {
-  map_->follower.close(map_->engine, t);
-  if (graph().states.back().t < t) add_extrapolated_state(map_->engine, t);
-}
-
-/// Adds the observations of tracks that are landmarks. The others wait in the track buffer until their landmarks are
-/// located.
-void GpMap::add_observations() {
-  for (const auto& [landmark, z] : map_->new_observations) map_->engine.add_observation(landmark, z);
-  map_->new_observations.clear();
-}
-
-void GpMap::optimise() {
-  map_->last_update = map_->engine.update();
-  const AggressiveMotion& motion = map_->aggressive_motion;
-  if (options_.parts.convergence) motion.converge(map_->engine, map_->noise, map_->last_update);
-  if (options_.parts.relaxation) motion.relax_prior(map_->engine, map_->noise, map_->last_update);
 }
 
 /// Estimates prior and noise from the data until now.
 void GpMap::learn() {
+  Estimate& estimate = map_->estimate;
   if (options_.learn.noise) {
-    map_->noise.follow(graph(), options_.learn.memory);
-    map_->engine.set_loss(map_->noise.loss(options_.loss, options_.loss_width));
+    estimate.noise.follow(graph(), options_.learn.memory);
+    estimate.engine.set_loss(estimate.noise.loss(options_.loss, options_.loss_width));
   }
-  if (options_.learn.prior == LearnPrior::always) {
-    map_->prior.follow(map_->engine);
-  } else {
-    map_->aggressive_motion.recover(map_->engine);
-  }
-  const double now = graph().states.back().t;
-  if (now < map_->next_smoothed_learning) return;
-  map_->next_smoothed_learning = now + kEvery;
-  learn_from_smoothed({now - MapEstimate::kSmoothedReach, now - kOneSided});
-  map_->last_update = map_->engine.update();
+  map_->prior.follow(estimate);
+  if (options_.learn.prior != LearnPrior::always) map_->relaxation.recover(estimate);
+  const double now = estimate.now();
+  if (now < map_->next_learning) return;
+  map_->next_learning = now + options_.learn.interval;
+  learn_smoothed(*map_, tracks_, options_, {now - options_.learn.reach, now - options_.learn.newest});
+  estimate.update();
 }
 
-/// Smoothed re-estimation: older motion is observed from both sides, so that tracks show whether they drifted, and the
-/// motion shows how smooth it was. The newest motion is observed from one side only; it keeps a prior that allows for
-/// aggressive motion.
-void GpMap::learn_from_smoothed(const TimeSpan& span, std::span<const double> surplus) {
-  if (options_.parts.outliers && !is_tentative())
-    reject_outliers(map_->noise, span);  // a tentative map may be wrong itself
-  const bool relaxed = options_.learn.prior != LearnPrior::always && map_->aggressive_motion.is_prior_relaxed(graph());
-  if (options_.learn.noise && options_.parts.track_noise && !relaxed) estimate_track_noise(map_->noise, span);
-  if (options_.learn.prior == LearnPrior::never) return;
-  learn_prior(map_->engine, span, surplus);
-  const int k = graph().first_state_after(span.until) - 1;
-  if (k > map_->engine.first_state()) map_->smoothed_qc = graph().qcs[index(k)];
+void GpMap::search_alternatives() {
+  if (!map_->estimate.is_tentative() && !map_->search.in_progress()) tracks_.forget_remembered();
+  if (const auto other = map_->search.advance(map_->estimate)) adopt(*other);
 }
 
-/// Deviations of the next observations from the newest state's constant velocity determine the next control state.
-void GpMap::predict_tracks() {
-  constexpr double kLargestSpread = 2.0;
-  const double noise =
-      std::min(kLargestSpread * map_->noise.scale(), map_->noise.scale_of_means()) * options_.sigma_scale;
-  placement_.predict([this, noise, newest = graph().states.back()](const TrackObservation& z) {
-    std::optional<double> deviation;
-    const auto track = tracks_.find(z.track);
-    if (track == tracks_.end() || track->second.role != Track::Role::landmark || track->second.mismatched)
-      return deviation;
-    const SE3 T = extrapolate(newest, z.t - newest.t).T;
-    const Vector3 point = T.inverse() * graph().landmarks[index(track->second.landmark)].position;
-    if (point.z() > 0.0) {
-      deviation = (z.noise.whitening() * Vector2(graph().camera.project(point) - z.pixel)).norm() / noise;
-    }
-    return deviation;
-  });
+/// Makes another estimate the present one. Tracks that did not fit the wrong one may be landmarks of the right one.
+void GpMap::adopt(const AlternativeEstimate& other) {
+  constexpr int kSettling = 3;  // updates
+  Estimate& estimate = map_->estimate;
+  const bool everything = other.first == 0;
+  report("hypothesis_accepted", fmt::format("a better alternative estimate of {}, by {:.1f}",
+                                            everything ? "everything" : "the recent part", other.advantage));
+  other.place_in(estimate.engine);
+  const auto known = static_cast<int>(graph().landmarks.size());
+  if (everything) {
+    tracks_.recall([this](int landmark) { return graph().landmarks[index(landmark)].alive; });
+    estimate.forget_covariances();
+    map_->triangulation.add(estimate, tracks_);
+  }
+  map_->leverage.apply(estimate);
+  for (int i = 0; i < kSettling; ++i) estimate.update();
+  map_->outliers.reject_since(known, estimate, tracks_);
+  map_->recent.reset();
+}
+
+bool GpMap::is_rejected() const {
+  const bool data_continue = map_->estimate.now() < until_;
+  return !published_ && data_continue && map_->check.is_rejected(map_->estimate, tracks_);
+}
+
+/// Drops the map, as before the first one. The trajectory of the next map reaches back to the beginning of this one.
+/// Close states are left out: there are many of them because predictions from a wrong map are far off, and they would
+/// slow down the attempts.
+void GpMap::reinitialise() {
+  constexpr double kApart = 0.02;  // [s]
+  report("map_rejected", "the initial map is rejected: most tracks do not fit it");
+  for (const ControlState& state : graph().states) {
+    if (state.t >= initial_map_.newest() + kApart) initial_map_.add_state_time(state.t);
+  }
+  initial_map_.reinitialise();
+  ++counters_[Count::initial_maps_rejected];
+  reinitialised_ = true;
+  map_.reset();
+  monitor_ = TrackingMonitor(context_.patience);  // its status is that of the rejected map
+  tracks_.restart();
 }
 
 void GpMap::check_support() {
   using Support = TrackingMonitor::Support;
+  Estimate& estimate = map_->estimate;
   const std::size_t n = graph().states.size();
   const double from = graph().states[n - 2].t, to = graph().states[n - 1].t;
-  const int seen = landmarks_in_view(), enough = options_.health.min_landmarks, few = options_.health.lost_landmarks;
-  if (map_->last_update.unsolvable) {
-    monitor_.lose(to, map_->last_update.reason);
+  const int seen = tracks_.landmarks_in_view(), enough = options_.health.min_landmarks,
+            few = options_.health.lost_landmarks;
+  if (estimate.last_update.unsolvable) {
+    monitor_.lose(to, estimate.last_update.reason);
   } else if (to > until_) {
     return;  // the data end, and their tracks with them
   } else if (seen < few) {
@@ -241,27 +174,29 @@ void GpMap::check_support() {
                      fmt::format("fewer than {} landmarks in view: the motion prior carries", enough));
   }
   if (!monitor_.lost()) return;
-  context_.log(fmt::format("{:.3f} s: lost: {}", monitor_.status().time, monitor_.status().reason));
   // States without data are removed.
-  const auto oldest = index(map_->engine.first_state());  // with a lag, older states are marginalised
+  const auto oldest = index(estimate.engine.first_state());  // with a lag, older states are marginalised
   while (graph().states.size() > oldest + 2 && graph().states.back().t > monitor_.status().time) {
-    map_->engine.remove_newest_state();
+    estimate.engine.remove_newest_state();
   }
 }
 
-/// Drops ended tracks that are not landmarks. They had their last chance to become landmarks in the step after their
-/// end; before the initial map, in the step that makes it, unless that is much later.
-void GpMap::drop_ended_tracks(double t) {
-  if (!map_) waiting_.forget_ended_before(t - kMemory);
-  std::erase_if(live_, [&](TrackId id) {
-    const auto track = tracks_.find(id);
-    if (!track->second.ended || (!map_ && !waiting_.observations(id).empty())) return false;
-    if (track->second.role == Track::Role::landmark) map_->ended_landmarks.push_back(id);
-    if (track->second.role == Track::Role::waiting) {
-      waiting_.forget(id);
-      tracks_.erase(track);
+/// Deviations of the next observations from the newest state's constant velocity determine the next control state.
+void GpMap::predict_next_state() {
+  constexpr double kLargestSpread = 2.0;
+  const NoiseLearner& learnt = map_->estimate.noise;
+  const double noise =
+      std::min(kLargestSpread * learnt.scale(), learnt.scale_of_means()) * options_.sigma_scale;
+  placement_.predict([this, noise, newest = graph().states.back()](const TrackObservation& z) {
+    std::optional<double> deviation;
+    const TrackTable::Track* const track = tracks_.find(z.track);
+    if (track == nullptr || track->role != TrackTable::Role::landmark || track->mismatched) return deviation;
+    const SE3 T = extrapolate(newest, z.t - newest.t).T;
+    const Vector3 point = T.inverse() * graph().landmarks[index(track->landmark)].position;
+    if (point.z() > 0.0) {
+      deviation = (z.noise.whitening() * Vector2(graph().camera.project(point) - z.pixel)).norm() / noise;
     }
-    return true;
+    return deviation;
   });
 }
 
@@ -271,31 +206,194 @@ void GpMap::follow_observations(double t, double ahead) {
   if (!map_ || monitor_.lost()) return;
   const auto start = std::chrono::steady_clock::now();
   take_observations(t);
-  if (!map_->new_observations.empty()) map_->follower.open(map_->engine, ahead);
-  for (const auto& [landmark, z] : map_->new_observations) {
-    map_->follower.follow(map_->engine, landmark, z);
+  const auto observations = tracks_.take_observations();
+  if (!observations.empty()) map_->follower.open(map_->estimate.engine, ahead);
+  for (const auto& [landmark, z] : observations) {
+    map_->follower.follow(map_->estimate.engine, landmark, z);
     publish_newest(z.t);
   }
-  map_->new_observations.clear();
   seconds_since_step_ += seconds_since(start);
 }
 
-/// Counts landmarks whose tracks have been alive since the last step: a track without recent observations has not
-/// moved.
-int GpMap::landmarks_in_view() const {
-  return static_cast<int>(
-      std::ranges::count(live_, Track::Role::landmark, [&](TrackId track) { return tracks_.at(track).role; }));
+void GpMap::finish() {
+  const bool had_map = map_.has_value();
+  const std::string reason = initial_map_.reason();  // before the last state, which is later than the data
+  if (const std::optional<double> last = placement_.last()) step(*last);
+  if (!map_) {
+    monitor_.fail(std::min(initial_map_.newest(), until_),
+                  "no initial map: " + (had_map ? initial_map_.reason() : reason));
+    return;
+  }
+  map_->check.confirm();  // no more data will
+  Estimate& estimate = map_->estimate;
+  const auto start = std::chrono::steady_clock::now();
+  if (options_.final_iterations == 0) {
+    estimate.engine.settle();
+  } else if (options_.lag > 0.0) {
+    estimate_remaining(*map_, tracks_, options_);
+    add_record(estimate.now(), seconds_since(start), options_.learn.rounds, {});
+  } else {
+    const Engine::OptimiseSummary summary = estimate_everything(*map_, tracks_, options_);
+    report("final_estimate",
+           fmt::format("final estimate: cost {:.2f} after {:.2f}, {} iterations{}", summary.final_cost,
+                       summary.initial_cost, summary.iterations, summary.converged ? "" : ", not converged"));
+    add_record(estimate.now(), seconds_since(start), summary.iterations, summary.final_cost);
+    validate_map();
+  }
+  record_final_prior();
+}
+
+/// An estimate that its own data contradict says so. Both halves of a wrong map may agree, though, where most tracks
+/// are wrong in the same way.
+void GpMap::validate_map() {
+  const ValidationOptions& validation = options_.validation;
+  if (!validation.enabled || monitor_.lost()) return;
+  const std::optional<double> difference = difference_of_halves(graph(), validation);
+  if (!difference) return;
+  const std::string words = fmt::format("two halves of the map disagree by {:.2g} % of the path", 100.0 * *difference);
+  report("validated", "final estimate: " + words);
+  if (*difference > validation.disagreement) {
+    monitor_.doubt(graph().states.front().t, std::min(map_->estimate.now(), until_), words);
+  }
+}
+
+Feedback GpMap::feedback(const FeedbackNeeds& needs) {
+  Feedback feedback;
+  feedback.t = until_;
+  if (std::exchange(reinitialised_, false)) return feedback;  // no map, even if there is a new one already
+  feedback.state = monitor_.state();
+  if (!map_) return feedback;
+  feedback.outliers = tracks_.take_outliers();
+  if (monitor_.lost()) return feedback;
+  feedback.newest = newest_seen();
+  if (needs.covariance) feedback.covariance = covariance(feedback.newest->t);
+  if (needs.expected)
+    feedback.expected = map_->prediction.expected(map_->estimate, tracks_, until_, placement_.upcoming());
+  return feedback;
+}
+
+/// The newest state or, if it is ahead of the data (per-observation mode), the estimate at their end.
+ControlState GpMap::newest_seen() const {
+  const ControlState& newest = graph().states.back();
+  if (newest.t <= until_) return newest;
+  return {until_, *pose(until_), *velocity(until_)};
+}
+
+// While the initial map is not confirmed, no causal pose and no covariance is published: not before the search for an
+// alternative estimate on both planes has failed and most tracks fit the map.
+
+void GpMap::publish_newest(double t) {
+  const std::optional<SE3> T = pose(t);  // none if the state has been removed
+  if (!T || (published_ && t <= *published_) || is_pending()) return;
+  context_.publish({{t, *T}, t, velocity(t)});
+  published_ = t;
+}
+
+/// Publishes the newest state, and the recent ones again: new observations improve them, too.
+void GpMap::publish_recent(double t) {
+  if (graph().states.back().t != t) return;  // it has been removed
+  map_->recent.follow(graph(), map_->estimate.engine.first_state());
+  if (is_pending()) return;
+  const auto states = map_->recent.states();
+  if (options_.per_observation) {
+    publish_newest(t);  // as between the states
+  } else {
+    context_.publish({{t, states.back().T}, t, states.back().velocity});
+    published_ = t;
+  }
+  for (std::size_t i = states.size() - 1; i-- > 0;) {
+    context_.publish({{states[i].t, states[i].T}, t, states[i].velocity});
+  }
+}
+
+PoseTrajectory GpMap::trajectory() const {
+  std::vector<StampedPose> poses;
+  if (!map_) return {};
+  for (const ControlState& state : graph().states) poses.push_back({state.t, state.T});
+  return PoseTrajectory(std::move(poses));
+}
+
+std::optional<SE3> GpMap::pose(double t) const { return map_ ? map_->estimate.pose(t) : std::nullopt; }
+
+std::optional<Vector6> GpMap::velocity(double t) const { return map_ ? map_->estimate.velocity(t) : std::nullopt; }
+
+std::optional<Matrix12> GpMap::covariance(double t) {
+  if (!map_ || is_pending()) return std::nullopt;
+  auto result = map_->estimate.engine.covariance(t);
+  if (result) *result *= information_share_;
+  return result;
+}
+
+std::optional<Matrix6> GpMap::relative_covariance(double t0, double t1) {
+  if (!map_) return std::nullopt;
+  const auto state_at = [&](double t) {
+    const auto found = std::ranges::lower_bound(graph().states, t, {}, &ControlState::t);
+    return static_cast<int>(found - graph().states.begin());
+  };
+  const int i = state_at(t0), j = state_at(t1);
+  const std::optional<Matrix12> joint = map_->estimate.engine.poses(i, j);
+  if (!joint) return std::nullopt;
+  const SE3 inverse = graph().states[index(j)].T.inverse() * graph().states[index(i)].T;
+  Eigen::Matrix<double, 6, 12> J;  // (T_i Exp δ_i)⁻¹ T_j Exp δ_j = T_i⁻¹ T_j Exp(δ_j − Ad(T_j⁻¹ T_i) δ_i)
+  J << -se3::adjoint(inverse), Matrix6::Identity();
+  return Matrix6(information_share_ * J * *joint * J.transpose());
+}
+
+std::vector<Landmark> GpMap::map() const {
+  std::vector<Landmark> result;
+  for (const auto& [id, track] : tracks_.all()) {
+    if (track.role != TrackTable::Role::landmark && track.role != TrackTable::Role::drifted) continue;
+    result.push_back({id, graph().landmarks[index(track.landmark)].position});
+  }
+  return result;
+}
+
+std::vector<std::string> GpMap::estimated_parameters() const {
+  std::vector<std::string> names = {"noise_scale", "noise_share"};
+  for (const char* when : {"", "final_"}) {
+    for (const char* axis :
+         {"rotation_x", "rotation_y", "rotation_z", "translation_x", "translation_y", "translation_z"}) {
+      names.push_back(fmt::format("{}qc_{}", when, axis));
+    }
+  }
+  return names;
+}
+
+std::vector<std::pair<std::string, std::int64_t>> GpMap::counters() const {
+  std::vector<std::pair<std::string, std::int64_t>> result;
+  for (std::size_t i = 0; i < kCountNames.size(); ++i) {
+    result.emplace_back(kCountNames[i], counters_[static_cast<Count>(i)]);
+  }
+  return result;
+}
+
+std::optional<Problem> GpMap::problem() const {
+  if (!map_ || options_.lag > 0.0) return std::nullopt;
+  return to_problem(graph());
+}
+
+void GpMap::report(const char* kind, std::string text) const {
+  context_.event({map_->estimate.now(), kind, std::move(text)});
+}
+
+/// Adds to the record of each control state's update the final density of the interval that ends there.
+void GpMap::record_final_prior() {
+  for (UpdateRecord& record : updates_) {
+    const int k = graph().interval_of(record.t);
+    if (k > 0 && !record.estimated.empty()) std::ranges::copy(graph().qcs[index(k)], record.estimated.end() - 6);
+  }
 }
 
 void GpMap::add_record(double t, double seconds, int iterations, std::optional<double> cost) {
   UpdateRecord record{t, seconds, 0, 0, 0, iterations, cost};
   if (map_) {
+    const NoiseLearner& noise = map_->estimate.noise;
     record.states = static_cast<int>(graph().states.size());
-    record.landmarks = map_->tracks;
+    record.landmarks = tracks_.tracks_with_landmarks();
     record.observations = graph().observation_count();
-    const Vector6& qc =
-        map_->smoothed_qc && options_.learn.prior == LearnPrior::smoothed ? *map_->smoothed_qc : graph().qc;
-    record.estimated = {map_->noise.scale(), map_->noise.share()};
+    const auto& smoothed = map_->prior.smoothed();
+    const Vector6& qc = smoothed && options_.learn.prior == LearnPrior::smoothed ? *smoothed : graph().qc;
+    record.estimated = {noise.scale(), noise.share()};
     for (int column = 0; column < 2; ++column) record.estimated.insert(record.estimated.end(), qc.begin(), qc.end());
   }
   updates_.push_back(record);

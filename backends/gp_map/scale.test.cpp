@@ -92,14 +92,10 @@ TEST_CASE("When most landmarks of the scale anchor turn out to be outliers, othe
   }
   BackEndContext context;
   context.camera = scene.camera();
-  int renewed = 0;
-  context.log = [&](const std::string& line) {
-    renewed += line.find("of the scale anchor were outliers") != std::string::npos ? 1 : 0;
-  };
   GpMap backend({}, context);
   backend.advance({observations, {}, 6.0});
   backend.finish();
-  CHECK(renewed == 1);
+  CHECK(std::ranges::count(backend.counters(), std::pair<std::string, std::int64_t>("scale_anchored_anew", 1)) == 1);
   CHECK(backend.graph().anchor.landmarks.size() > 10);
   CHECK(backend.status().state == RunState::ok);
   const Scores scores = score(scene.ground_truth(), backend.trajectory(), {.association = "interpolated"});

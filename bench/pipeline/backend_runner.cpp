@@ -75,8 +75,9 @@ void BackEndRunner::take(TrackBatch batch) {
   undistort(batch);
   stationary_.apply(batch);
   digest(batch);
-  if (estimators_.back()->status().state == RunState::lost) {
-    context_.log(fmt::format("{:.3f} s: re-initialising with a new back-end, in a world frame of its own", until_));
+  if (const Status status = estimators_.back()->status(); status.state == RunState::lost) {
+    context_.event({status.time, "lost", "lost: " + status.reason});
+    context_.event({until_, "reinitialised", "re-initialising with a new back-end, in a world frame of its own"});
     start_estimator();
   }
   until_ = batch.until;
@@ -94,8 +95,8 @@ void BackEndRunner::end_estimator(const StationaryDetector::Rejected& stationary
   Estimator& estimator = *estimators_.back();
   Status status = estimator.status();
   const double from = stationary.period.from;
-  context_.log(
-      fmt::format("{:.3f} s: the stationary period from {:.3f} s on is rejected: the camera moved", until_, from));
+  context_.event({until_, "stationary_period_rejected",
+                  fmt::format("the stationary period from {:.3f} s on is rejected: the camera moved", from)});
   if (!estimator.newest || status.state >= RunState::lost) return;
   status.state = RunState::lost;
   status.reason = "the camera moved while nothing was seen";
@@ -129,8 +130,8 @@ void BackEndRunner::relocalise() {
   }
   if (found && last_found_ && found->world == last_found_->world && agree(found->to_world, last_found_->to_world)) {
     if (!estimator.is_relocalised()) {
-      context_.log(
-          fmt::format("{:.3f} s: relocalised in the earlier world, by {} landmarks", until_, found->landmarks));
+      context_.event({until_, "relocalised",
+                      fmt::format("relocalised in the earlier world, by {} landmarks", found->landmarks)});
     }
     estimator.relocalise(*found);
     remember_landmarks();
@@ -250,8 +251,12 @@ void BackEndRunner::add_segments(double rate, RunResult& result) {
   for (const auto& estimator : estimators_) {
     BackEnd& backend = *estimator->backend;
     watch_.time([&] { backend.finish(); });
+    if (const Status status = backend.status(); estimator == estimators_.back() && status.state == RunState::lost) {
+      context_.event({status.time, "lost", "lost: " + status.reason});
+    }
     result.estimated_parameters = backend.estimated_parameters();
     result.updates.insert(result.updates.end(), backend.updates().begin(), backend.updates().end());
+    for (const auto& [name, count] : backend.counters()) result.counters[name] += count;
     const std::size_t causal_world = estimator->world;
     std::vector<CausalPose> published_in_world = std::move(estimator->published_in_world);
     estimator->use_own_world();

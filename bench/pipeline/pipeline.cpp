@@ -91,6 +91,10 @@ RunResult run(const Source& source, BatchStream& stream, const FeedbackNeeds& ne
   KeptTracks kept(stream);
   BatchStream& front = keep_tracks ? kept : stream;
   context.log = [&](const std::string& line) { result.log.push_back(line); };
+  context.event = [&](const RunEvent& event) {
+    result.log.push_back(fmt::format("{:.3f} s: {}", event.t, event.text));
+    result.events.push_back(event);
+  };
   BackEndRunner back(make_backend, std::move(context), source.camera(), source.time_range(), options);
   Stopwatch total;
   total.time([&] {

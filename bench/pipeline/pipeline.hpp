@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,6 +44,8 @@ struct RunResult {
   std::string tracks_sha256;  ///< of all input of the back-end: equal for runs that can be compared
   std::size_t observations = 0;
   std::optional<TrackBatch> tracks;  ///< all output of the front-end, raw pixels, if it is kept
+  std::vector<RunEvent> events;
+  std::map<std::string, std::int64_t> counters;  ///< of the back-ends
   std::vector<std::string> log;
 };
 
@@ -63,7 +66,7 @@ using Progress = std::function<void(const RunProgress&)>;
 using MakeBackEnd = std::function<std::unique_ptr<BackEnd>(const BackEndContext&)>;
 
 /// Runs front-end and back-end from the beginning of the source's time range to its end. Of `context` the camera,
-/// patience, publish and log are set here. `trajectory_rate`: of the final trajectories [Hz]; 0: the back-end's own
+/// patience, publish, event and log are set here. `trajectory_rate`: of the final trajectories [Hz]; 0: the back-end's own
 /// poses. `keep_tracks`: fills RunResult::tracks.
 RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackEnd& make_backend,
                        BackEndContext context, const PipelineOptions& options, double trajectory_rate,

@@ -13,7 +13,7 @@
 
 /// Version of the plugin API. Raised with every incompatible change of the headers that plugins include (core/plugin/
 /// and its includes): a virtual function, a member, a changed meaning.
-#define EVBENCH_PLUGIN_API 9
+#define EVBENCH_PLUGIN_API 10
 
 #define EVBENCH_ABI_TEXT_OF(value) #value
 #define EVBENCH_ABI_TEXT(value) EVBENCH_ABI_TEXT_OF(value)

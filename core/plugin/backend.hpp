@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/data/causal_poses.hpp"
@@ -16,6 +17,13 @@
 #include "core/plugin/status.hpp"
 
 namespace evbench {
+
+/// Something that happened to the estimate.
+struct RunEvent {
+  double t = 0.0;    ///< [s], sequence time
+  std::string kind;  ///< a word for programs: "initialised", "lost"
+  std::string text;  ///< for people, without the time
+};
 
 /// What a back-end gets in addition to its options.
 struct BackEndContext {
@@ -33,6 +41,8 @@ struct BackEndContext {
   /// an improved estimate, which scores at a latency use (fixed-lag smoothing).
   std::function<void(const CausalPose&)> publish = [](const CausalPose&) {};
   std::function<void(const std::string&)> log = [](const std::string&) {};  ///< writes a line to the run's log.txt
+  /// Adds an event to `events` in metrics.json and, with its time, to log.txt.
+  std::function<void(const RunEvent&)> event = [](const RunEvent&) {};
 };
 
 /// Time, size and result of one update: a line of timing.csv.
@@ -98,6 +108,9 @@ class BackEnd {
   /// Names of the parameters that it estimates from the data (`noise_scale`, ...): columns of estimated_parameters.csv,
   /// which has a line for each update.
   virtual std::vector<std::string> estimated_parameters() const { return {}; }
+
+  /// What it counted until now, by name: `counters` in metrics.json, summed over the back-ends of a run.
+  virtual std::vector<std::pair<std::string, std::int64_t>> counters() const { return {}; }
 };
 
 }  // namespace evbench

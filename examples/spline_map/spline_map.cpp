@@ -98,8 +98,9 @@ void SplineMap::initialise(double t) {
     landmark.observations = observations_of(track);
     tracks_.forget(track);
   }
-  context_.log(fmt::format("{:.3f} s: initial map: {} landmarks, median parallax {:.1f} deg, from {:.3f} s", t,
-                           landmarks_.size(), first->parallax_deg, spline_.start()));
+  context_.event({t, "initialised",
+                  fmt::format("initial map: {} landmarks, median parallax {:.1f} deg, from {:.3f} s",
+                              landmarks_.size(), first->parallax_deg, spline_.start())});
   spline_.extend_to(t);
   remove_outliers(spline_.start());
   add_landmarks(t);
@@ -192,7 +193,6 @@ void SplineMap::watch(double from, double t) {
 
 /// Drops the part of the estimate that no data support.
 void SplineMap::lose() {
-  context_.log(fmt::format("{:.3f} s: lost: {}", monitor_.status().time, monitor_.status().reason));
   newest_ = std::clamp(monitor_.status().time, spline_.start(), newest_);
   spline_.cut(newest_);
   for (auto& [track, landmark] : landmarks_) {

@@ -56,19 +56,6 @@ FactorGraph simulate_problem(const CameraMotion& motion, std::uint64_t seed, boo
   return graph;
 }
 
-namespace {
-
-/// Solved from an estimate at which the landmarks from index `held` on are held at first.
-FactorGraph solved_from(FactorGraph graph, int held) {
-  Engine engine(std::move(graph), {});
-  engine.optimise(20, 1e-6);
-  for (int j = held; j < std::ssize(engine.graph().landmarks); ++j) engine.drop_prior(j);
-  engine.optimise(50, 1e-9);
-  return engine.graph();
-}
-
-}  // namespace
-
 FactorGraph misled(FactorGraph graph) {
   const Vector3 across = (graph.states.back().T.p - graph.states.front().T.p).normalized();
   for (int j = kOld; j < std::ssize(graph.landmarks); ++j) {
@@ -79,19 +66,11 @@ FactorGraph misled(FactorGraph graph) {
     landmark.position = p + across.dot(Vector3(0.4, 0.0, 2.24) - p) / across.dot(ray) * ray;
     landmark.prior = {landmark.position, 0.02};
   }
-  return solved_from(std::move(graph), kOld);
-}
-
-FactorGraph depth_reversed(FactorGraph graph) {
-  constexpr double kMedianDepth = 2.0;
-  for (FactorGraph::Landmark& landmark : graph.landmarks) {
-    if (landmark.intervals.empty()) continue;
-    const Vector3& p = graph.states[index(landmark.intervals.front())].T.p;
-    const double depth = (landmark.position - p).z();
-    landmark.position = p + kMedianDepth * kMedianDepth / (depth * depth) * (landmark.position - p);
-    landmark.prior = {landmark.position, 0.02};
-  }
-  return solved_from(std::move(graph), 0);
+  Engine engine(std::move(graph), {});
+  engine.optimise(20, 1e-6);
+  for (int j = kOld; j < std::ssize(engine.graph().landmarks); ++j) engine.drop_prior(j);
+  engine.optimise(50, 1e-9);
+  return engine.graph();
 }
 
 FactorGraph solved(FactorGraph graph) {

@@ -24,9 +24,6 @@ FactorGraph simulate_problem(const CameraMotion& motion, std::uint64_t seed, boo
 /// Solved from an estimate with the new landmarks on a plane normal to the motion.
 FactorGraph misled(FactorGraph graph);
 
-/// Solved from an estimate with near and far swapped (Necker's reversal).
-FactorGraph depth_reversed(FactorGraph graph);
-
 FactorGraph solved(FactorGraph graph);
 
 double cost(const FactorGraph& graph);

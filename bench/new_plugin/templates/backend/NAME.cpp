@@ -232,7 +232,7 @@ class ClassName : public evbench::BackEnd {
     trajectory_.pop_back();  // the newest one follows in step()
     monitor_.observe(t, t, TrackingMonitor::Support::full);
     update_map();
-    context_.log("initial map at " + std::to_string(t) + " s, landmarks: " + std::to_string(points_.size()));
+    context_.event({t, "initialised", "initial map: " + std::to_string(points_.size()) + " landmarks"});
     return true;
   }
 

@@ -1,0 +1,74 @@
+#include "backends/gp_map/modules/prior_relaxation.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "backends/gp_map/observation_follower.hpp"
+#include "backends/gp_map/testing/drawn_problem.hpp"
+#include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+using testing::DrawnProblem;
+
+constexpr double kDensity = 0.01;  // [rad²/s³, m²/s³]
+constexpr int kEnough = 6;         // landmarks
+
+/// Relaxation of the prior after a state 5 ms after the last one. `seen` landmarks are observed with this offset from
+/// their expected pixels [px], the i-th one in a direction of i `turn` from the image's x axis.
+double relaxation_for(int seen, double offset, double turn) {
+  Counters counters;
+  Estimate estimate(DrawnProblem({.qc = kDensity}, 1).solve_incrementally().graph(), {}, kEnough, 0.0, counters);
+  Engine& engine = estimate.engine;
+  engine.settle();
+  PriorRelaxation relaxation({}, 0.3, engine.graph().qc);
+  const double t = engine.graph().states.back().t + 0.005;
+  std::vector<int> in_view;
+  for (const auto& group : engine.graph().intervals.back().groups()) in_view.push_back(group.landmark);
+  REQUIRE(std::ssize(in_view) >= seen);
+  add_extrapolated_state(engine, t);
+  const FactorGraph& graph = engine.graph();
+  for (int i = 0; i < seen; ++i) {
+    const Vector3& position = graph.landmarks[index(in_view[index(i)])].position;
+    const Vector2 expected = graph.camera.project(graph.states.back().T.inverse() * position);
+    const Vector2 pixel = expected + offset * Vector2(std::cos(i * turn), std::sin(i * turn));
+    engine.add_observation(in_view[index(i)], {t, pixel, 10.0});
+  }
+  estimate.update();
+  relaxation.relax(estimate);
+  CHECK(counters[Count::priors_relaxed] == (graph.qc.maxCoeff() > 1.5 * kDensity ? 1 : 0));
+  return graph.qc.maxCoeff() / kDensity;
+}
+
+}  // namespace
+
+TEST_CASE("A prior is relaxed as far as it is worthwhile") {
+  const auto kept = [](const std::vector<double>& errors, double most = 1e4) {
+    const auto error_at = [&](double factor) { return errors.at(index(std::lround(std::log10(factor)))); };
+    return worthwhile_relaxation(errors.front(), 3.0, most, error_at);
+  };
+  CHECK(kept({2.9}) == 1.0);
+  CHECK(kept({4.05, 1.5}) == 10.0);
+  CHECK(kept({4.05, 3.63, 3.38, 3.19, 2.83}) == 1.0);  // by chance, a little each time
+  CHECK(kept({20.0, 18.0, 5.0, 2.0}) == 1000.0);       // the robust loss gives little gradient at first
+  CHECK(kept({20.0, 18.0, 5.0, 4.9}) == 100.0);
+  CHECK(kept({3.48, 3.30, 2.65}) == 100.0);
+  CHECK(kept({3.48, 2.90}) == 1.0);
+  CHECK(kept({20.0, 6.0, 5.5, 5.1, 4.8}) == 10.0);  // the gain of the first attempt does not count for the others
+  CHECK(kept({20.0, 19.5}) == 1.0);
+  CHECK(kept({20.0, 12.0, 7.0}, 100.0) == 100.0);
+}
+
+TEST_CASE("The prior is relaxed for a motion that it suppresses, not for tracks with independent errors") {
+  for (const int seen : {kEnough, 12}) {
+    CAPTURE(seen);
+    CHECK(relaxation_for(seen, 2.0, 0.0) >= 10.0);
+    CHECK(relaxation_for(seen, 2.0, 0.6) == Approx(1.0));
+    CHECK(relaxation_for(seen, 0.1, 0.0) == Approx(1.0));
+  }
+  CHECK(relaxation_for(kEnough - 1, 2.0, 0.0) == Approx(1.0));
+}
+
+}  // namespace evbench::gp_map
