@@ -82,7 +82,7 @@ TEST_CASE("States and landmarks that were added since the search are moved along
   CHECK((newest_state(after) - newest_state(before)).norm() < 1e-9);
   for (const auto& [k, landmark] : {std::pair{kStates, 0}, {kStates - 3, 1}}) {
     const auto seen = [&, k = k, landmark = landmark](const FactorGraph& graph) {
-      const Vector3& position = graph.landmarks[index(kLandmarks + landmark)].position;
+      const Vector3& position = graph.landmarks[index(ambiguous_sequence::kLandmarks + landmark)].position;
       return Vector3(graph.states[index(k)].T.inverse() * position);
     };
     CHECK((seen(after) - seen(before)).norm() < 1e-9);

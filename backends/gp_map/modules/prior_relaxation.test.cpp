@@ -13,14 +13,14 @@ namespace {
 
 using testing::DrawnProblem;
 
-constexpr double kDensity = 0.01;  // [rad²/s³, m²/s³]
+constexpr double kUnrelaxed = 0.01;  // [rad²/s³, m²/s³]
 constexpr int kEnough = 6;         // landmarks
 
 /// Relaxation of the prior after a state 5 ms after the last one. `seen` landmarks are observed with this offset from
 /// their expected pixels [px], the i-th one in a direction of i `turn` from the image's x axis.
 double relaxation_for(int seen, double offset, double turn) {
   Counters counters;
-  Estimate estimate(DrawnProblem({.qc = kDensity}, 1).solve_incrementally().graph(), {}, kEnough, 0.0, counters);
+  Estimate estimate(DrawnProblem({.qc = kUnrelaxed}, 1).solve_incrementally().graph(), {}, kEnough, 0.0, counters);
   Engine& engine = estimate.engine;
   engine.settle();
   PriorRelaxation relaxation({}, 0.3, engine.graph().qc);
@@ -38,8 +38,8 @@ double relaxation_for(int seen, double offset, double turn) {
   }
   estimate.update();
   relaxation.relax(estimate);
-  CHECK(counters[Count::priors_relaxed] == (graph.qc.maxCoeff() > 1.5 * kDensity ? 1 : 0));
-  return graph.qc.maxCoeff() / kDensity;
+  CHECK(counters[Count::priors_relaxed] == (graph.qc.maxCoeff() > 1.5 * kUnrelaxed ? 1 : 0));
+  return graph.qc.maxCoeff() / kUnrelaxed;
 }
 
 }  // namespace
