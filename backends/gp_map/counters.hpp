@@ -17,13 +17,17 @@ enum class Count {
   outliers,                ///< landmarks removed
   truncated,               ///< landmarks whose tracks drifted later
   noisier_tracks,          ///< tracks that got larger sigmas than others
-  priors_relaxed,          ///< control states
+  relaxations_tried,       ///< control states for which weaker priors were tried
+  priors_relaxed,          ///< of these: for which one was kept
   searches,
   alternatives_accepted,
   reacquired,              ///< tracks that continue their landmark
   reacquired_as_new,       ///< tracks that became another landmark
   reassociations_rejected,
   scale_anchored_anew,
+  updates,                 ///< of the smoother, without those of searches and of the final estimate
+  updates_damped,          ///< of these, those whose step would have raised the cost
+  stages,                  ///< that the updates redid
   count,
 };
 
@@ -31,9 +35,10 @@ inline constexpr std::array<const char*, static_cast<std::size_t>(Count::count)>
     "initial_maps",     "initial_maps_rejected", "landmarks",
     "landmarks_without_depth", "misfits",        "leverage_bounded",
     "outliers",         "truncated",             "noisier_tracks",
-    "priors_relaxed",   "searches",              "alternatives_accepted",
+    "relaxations_tried", "priors_relaxed",   "searches",              "alternatives_accepted",
     "reacquired",       "reacquired_as_new",     "reassociations_rejected",
-    "scale_anchored_anew"};
+    "scale_anchored_anew", "updates",            "updates_damped",
+    "stages"};
 
 /// Of one run, over all its maps.
 class Counters {

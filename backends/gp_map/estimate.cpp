@@ -39,6 +39,13 @@ void Estimate::end_step() {
   ++steps_;
 }
 
+void Estimate::update() {
+  last_update = engine.update();
+  count(Count::updates);
+  if (last_update.damping > 0.0) count(Count::updates_damped);
+  count(Count::stages, last_update.stages);
+}
+
 int Estimate::add_landmark(const Vector3& guess, const LandmarkPrior& prior) {
   factors_.emplace_back();
   return engine.add_landmark(guess, prior);

@@ -47,7 +47,7 @@ class Estimate {
   void end_step();
   std::size_t steps() const { return steps_; }  ///< one a control state
 
-  void update() { last_update = engine.update(); }
+  void update();
 
   int add_landmark(const Vector3& guess, const LandmarkPrior& prior);
   /// Before one of few landmarks of the scale anchor is removed, those in view are added to it, at the present scale.

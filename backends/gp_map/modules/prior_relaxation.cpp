@@ -78,7 +78,10 @@ void PriorRelaxation::relax(Estimate& estimate) const {
     return newest_error(estimate);
   };
   const double most = options_.most / graph.qc.cwiseQuotient(qc_).maxCoeff();
-  const double kept = worthwhile_relaxation(newest_error(estimate), options_.error, most, weaken);
+  const double error = newest_error(estimate);
+  if (!(error > options_.error)) return;
+  estimate.count(Count::relaxations_tried);
+  const double kept = worthwhile_relaxation(error, options_.error, most, weaken);
   if (kept != tried) weaken(kept);
   if (!(kept > 1.0)) return;
   engine.set_next_qc(graph.qcs.back());
