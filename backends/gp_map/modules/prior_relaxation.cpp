@@ -35,57 +35,36 @@ void RelaxationOptions::declare(OptionSet& set) {
   set.add("enabled", enabled, "the prior is relaxed while it suppresses the motion");
   set.add("error", error, "median error of the newest observations that shows it [sigmas of a track's mean error]")
       .above(0.0);
-  set.add("most", most, "times weaker than the given prior, at most").range(1.0, 1e12);
+  set.add("factor", factor, "by how much weaker it becomes in one step").range(1.0, 1e6);
+  set.add("gain", gain, "it stays weaker if the error falls below this share").range(0.0, 1.0);
+  set.add("most", most, "times weaker than the given prior, at most, after several steps").range(1.0, 1e12);
   set.add("intervals", intervals, "newest intervals of the motion that are relaxed").range(1, 100);
-}
-
-double worthwhile_relaxation(double error, double allowed, double most,
-                             const std::function<double(double)>& error_at) {
-  constexpr double kWeaker = 10.0;  // per attempt
-  constexpr double kHelp = 0.95;    // attempts go on while the error falls below this share of the last one
-  constexpr double kWorthInAll = 0.8, kWorthEach = 0.9;  // remaining share: in all; per attempt since the last one kept
-  const double before = error;
-  double worth = error, kept = 1.0;
-  for (double tried = 1.0; error > allowed && tried < most;) {
-    tried *= kWeaker;
-    worth *= kWorthEach;
-    const double now = error_at(tried);
-    if (!(now < kHelp * error)) break;
-    error = now;
-    if (error < worth && error < kWorthInAll * before) {
-      kept = tried;
-      worth = error;
-    }
-  }
-  return kept;
 }
 
 void PriorRelaxation::relax(Estimate& estimate) const {
   if (!options_.enabled) return;
   Engine& engine = estimate.engine;
   const FactorGraph& graph = estimate.graph();
+  const double error = newest_error(estimate), relaxed = graph.qc.cwiseQuotient(qc_).maxCoeff();
+  if (!(error > options_.error) || relaxed * options_.factor > options_.most) return;
   const int newest = static_cast<int>(graph.states.size()) - 1;
   const int first = std::max(engine.first_state() + 1, newest - options_.intervals + 1);
   const std::vector<Vector6> densities(graph.qcs.begin() + first, graph.qcs.end());
   const std::vector<double> expansions(graph.expansions.begin() + first, graph.expansions.end());
-  double tried = 1.0;
   const auto weaken = [&](double factor) {
-    tried = factor;
     for (std::size_t i = 0; i < densities.size(); ++i) {
       engine.set_qc(first + static_cast<int>(i), factor * densities[i], expansions[i] / factor);
     }
     estimate.update();
-    return newest_error(estimate);
   };
-  const double most = options_.most / graph.qc.cwiseQuotient(qc_).maxCoeff();
-  const double error = newest_error(estimate);
-  if (!(error > options_.error)) return;
   estimate.count(Count::relaxations_tried);
-  const double kept = worthwhile_relaxation(error, options_.error, most, weaken);
-  if (kept != tried) weaken(kept);
-  if (!(kept > 1.0)) return;
-  engine.set_next_qc(graph.qcs.back());
-  estimate.count(Count::priors_relaxed);
+  weaken(options_.factor);
+  if (newest_error(estimate) < options_.gain * error) {
+    engine.set_next_qc(graph.qcs.back());
+    estimate.count(Count::priors_relaxed);
+  } else {
+    weaken(1.0);
+  }
 }
 
 bool PriorRelaxation::is_relaxed(const Estimate& estimate) const {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "backends/gp_map/estimate.hpp"
 #include "core/plugin/options.hpp"
 
@@ -10,17 +8,13 @@ namespace evbench::gp_map {
 struct RelaxationOptions {
   bool enabled = true;
   double error = 3.0;
-  double most = 1e4;
+  double factor = 10.0;
+  double gain = 0.75;
+  double most = 100.0;
   int intervals = 3;
 
   void declare(OptionSet& set);
 };
-
-/// How many times weaker the prior should be, in factors of ten up to `most`, if most tracks have an error of `error`
-/// [sigmas], more than `allowed`. `error_at(f)` is their error with a prior f times weaker. The prior is relaxed only as
-/// far as it is worthwhile: tracks of a motion that the prior suppresses gain much, a few tracks with a common error by
-/// chance gain a little each time.
-double worthwhile_relaxation(double error, double allowed, double most, const std::function<double(double)>& error_at);
 
 /// Relaxes the motion prior over the newest intervals where the camera moves more aggressively than it expects, which
 /// shows in the errors of most tracks. Otherwise the robust loss would treat good tracks as outliers.
@@ -30,8 +24,9 @@ class PriorRelaxation {
   PriorRelaxation(const RelaxationOptions& options, double window, const Vector6& qc)
       : options_(options), window_(window), qc_(qc) {}
 
-  /// After an update, which may have left most tracks with large errors; makes the further updates that are needed, at
-  /// most 6.
+  /// After an update, which may have left most tracks with large errors. Makes at most two further updates. A weaker
+  /// prior stays if it was worth it: tracks of a motion that the prior suppresses gain much, a few tracks with a common
+  /// error by chance gain a little.
   void relax(Estimate& estimate) const;
 
   /// Is the prior relaxed now? The errors of the tracks are then those of the motion.

@@ -44,23 +44,6 @@ double relaxation_for(int seen, double offset, double turn) {
 
 }  // namespace
 
-TEST_CASE("A prior is relaxed as far as it is worthwhile") {
-  const auto kept = [](const std::vector<double>& errors, double most = 1e4) {
-    const auto error_at = [&](double factor) { return errors.at(index(std::lround(std::log10(factor)))); };
-    return worthwhile_relaxation(errors.front(), 3.0, most, error_at);
-  };
-  CHECK(kept({2.9}) == 1.0);
-  CHECK(kept({4.05, 1.5}) == 10.0);
-  CHECK(kept({4.05, 3.63, 3.38, 3.19, 2.83}) == 1.0);  // by chance, a little each time
-  CHECK(kept({20.0, 18.0, 5.0, 2.0}) == 1000.0);       // the robust loss gives little gradient at first
-  CHECK(kept({20.0, 18.0, 5.0, 4.9}) == 100.0);
-  CHECK(kept({3.48, 3.30, 2.65}) == 100.0);
-  CHECK(kept({3.48, 2.90}) == 1.0);
-  CHECK(kept({20.0, 6.0, 5.5, 5.1, 4.8}) == 10.0);  // the gain of the first attempt does not count for the others
-  CHECK(kept({20.0, 19.5}) == 1.0);
-  CHECK(kept({20.0, 12.0, 7.0}, 100.0) == 100.0);
-}
-
 TEST_CASE("The prior is relaxed for a motion that it suppresses, not for tracks with independent errors") {
   for (const int seen : {kEnough, 12}) {
     CAPTURE(seen);
