@@ -1,11 +1,11 @@
 # evbench_add_plugin(NAME SOURCES FILE... [LINKS LIBRARY...] [TESTS FILE...] [FOLDER DIR])
 #
 # Adds the target NAME: libNAME.so in the top build folder (or in DIR), built from sources that register plugins
-# (core/plugin/registration.hpp), for `evbench --plugin libNAME.so`. LINKS: libraries that the sources need in addition
+# (<evbench/plugin.hpp>), for `evbench --plugin libNAME.so`. LINKS: libraries that the sources need in addition
 # to evbench::core and evbench::events.
 #
 # TESTS: Catch2 sources. With the plugin's sources they form the program NAME_tests, which ctest runs; they may use the
-# conformance battery (bench/battery/). Without Catch2 the tests are left out with a message.
+# conformance battery (<evbench/plugin_test.hpp>). Without Catch2 the tests are left out with a message.
 #
 # The plugin contains its own hidden copy of the evbench code that it uses. The copy does not share state with the
 # program (additional event formats, a request to end). The plugin is built with the flags that evbench was built with,
@@ -34,6 +34,11 @@ function(evbench_add_plugin name)
   evbench_plugin_flags(${name}_objects)
 
   add_library(${name} MODULE ${EVBENCH_PLUGIN_ENTRY})
+  if(EVBENCH_PLUGIN_INCLUDE)  # outside of evbench's own build
+    evbench_header_closure(headers ${EVBENCH_PLUGIN_INCLUDE} evbench/plugin.hpp)
+    evbench_header_hash(hash ${EVBENCH_PLUGIN_INCLUDE} ${headers})
+    target_compile_definitions(${name} PRIVATE EVBENCH_PLUGIN_HEADERS="${hash}")
+  endif()
   target_link_libraries(${name} PRIVATE ${name}_objects)
   evbench_plugin_flags(${name})
   target_link_options(${name} PRIVATE -Wl,--exclude-libs,ALL)

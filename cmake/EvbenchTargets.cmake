@@ -60,7 +60,9 @@ function(evbench_library name kind)
   cmake_parse_arguments(ARG "" "PRECOMPILED;GROUP" "SOURCES;LINKS" ${ARGN})
   add_library(${name} ${kind} ${ARG_SOURCES})
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>
-                                            $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/evbench>)
+                                            $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include>
+                                            $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/generated>
+                                            $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${name} PUBLIC cxx_std_20)
   target_link_libraries(${name} PUBLIC ${ARG_LINKS} PRIVATE $<BUILD_INTERFACE:evbench_flags>)
   if(NOT ARG_PRECOMPILED)
@@ -166,30 +168,34 @@ endfunction()
 # exist only after the installation.
 function(evbench_install_package)
   include(CMakePackageConfigHelpers)
-  set(libraries)
+  # The smoother and what it stands on, without the libraries of the rest.
+  foreach(name geometry smoother)
+    set_target_properties(evbench_${name} PROPERTIES EXPORT_NAME ${name})
+    install(TARGETS evbench_${name} EXPORT evbench_smoother_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  endforeach()
   foreach(name core eval events event_simulation pipeline battery)
     set_target_properties(evbench_${name} PROPERTIES EXPORT_NAME ${name})
-    list(APPEND libraries evbench_${name})
+    install(TARGETS evbench_${name} EXPORT evbench_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   endforeach()
-  install(TARGETS ${libraries} EXPORT evbench_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(TARGETS evbench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  foreach(folder core eval bench/pipeline bench/battery)
-    install(DIRECTORY ${CMAKE_SOURCE_DIR}/${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/evbench/${folder}
-            FILES_MATCHING PATTERN "*.hpp" PATTERN "testing" EXCLUDE)
-  endforeach()
+  install(CODE "
+    include(\"${CMAKE_SOURCE_DIR}/cmake/PublicHeaders.cmake\")
+    evbench_header_closure(headers \"${CMAKE_SOURCE_DIR}\" include/evbench/plugin.hpp include/evbench/plugin_test.hpp
+                           include/evbench/plugin_entry.hpp include/evbench/smoother.hpp)
+    evbench_install_headers(\"${CMAKE_SOURCE_DIR}\"
+                            \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}\" \${headers})")
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/configs DESTINATION ${CMAKE_INSTALL_DATADIR}/evbench)
   install(FILES ${CMAKE_SOURCE_DIR}/examples/python/evbench_process.py DESTINATION ${CMAKE_INSTALL_DATADIR}/evbench/python)
   evbench_install_documents()
   set(package ${CMAKE_INSTALL_LIBDIR}/cmake/evbench)
   install(EXPORT evbench_targets NAMESPACE evbench:: DESTINATION ${package})
+  install(EXPORT evbench_smoother_targets NAMESPACE evbench:: DESTINATION ${package})
   configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/evbenchConfig.cmake.in
                                 ${CMAKE_BINARY_DIR}/package/evbenchConfig.cmake INSTALL_DESTINATION ${package})
   write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/evbenchConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${CMAKE_BINARY_DIR}/package/evbenchConfig.cmake ${CMAKE_BINARY_DIR}/package/evbenchConfigVersion.cmake
-                ${CMAKE_SOURCE_DIR}/cmake/EvbenchPlugin.cmake ${EVBENCH_PLUGIN_ENTRY} ${EVBENCH_PLUGIN_TEST_MAIN}
+                ${CMAKE_SOURCE_DIR}/cmake/EvbenchPlugin.cmake ${CMAKE_SOURCE_DIR}/cmake/PublicHeaders.cmake ${EVBENCH_PLUGIN_ENTRY} ${EVBENCH_PLUGIN_TEST_MAIN}
           DESTINATION ${package})
-  install(FILES ${CMAKE_SOURCE_DIR}/core/testing/catch2.hpp
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/evbench/core/testing)
 endfunction()
 
 # Installs the documents under the paths that messages cite, and the shell completion and manual page, which the program

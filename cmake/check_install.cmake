@@ -1,6 +1,6 @@
 # cmake -DBUILD=... -DWORK=... -DGENERATOR=... -DCXX=... [-DFLAGS=...] -P check_install.cmake: installs evbench to a
-# temporary prefix. Outside the build tree it builds and runs a program that uses the installed evbench, and takes a new
-# plugin of each kind from `evbench new-plugin` to a table. It checks that the documents that messages cite are
+# temporary prefix. Outside the build tree it builds and runs the programs that use the installed smoother, and takes a
+# new plugin of each kind from `evbench new-plugin` to a table. It checks that the documents that messages cite are
 # installed, and that the program refuses libraries that are not plugins of this evbench.
 cmake_minimum_required(VERSION 3.22)
 
@@ -23,27 +23,10 @@ foreach(kind backend frontend source minimal)
   add_subdirectory(my_${kind})
 endforeach()
 find_package(evbench 0.1 REQUIRED)
-add_executable(user user.cpp)
-target_link_libraries(user PRIVATE evbench::core evbench::eval)
 foreach(name no_plugin other_abi missing_symbol)
   add_library(${name} MODULE ${name}.cpp)
   set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/odd)
 endforeach()
-]])
-file(WRITE ${WORK}/project/user.cpp [[
-#include "core/geometry/se3.hpp"
-#include "eval/scores.hpp"
-
-int main() {
-  std::vector<evbench::StampedPose> poses;
-  for (int i = 0; i < 50; ++i) {
-    const double t = 0.1 * i;
-    const evbench::Vector6 xi = (evbench::Vector6() << 0.1 * t, 0.0, 0.0, t, t * t, 0.0).finished();
-    poses.push_back({t, evbench::se3::exp(xi)});
-  }
-  const evbench::PoseTrajectory trajectory(std::move(poses));
-  return evbench::score(trajectory, trajectory, {}).pairs == 50 ? 0 : 1;
-}
 ]])
 file(WRITE ${WORK}/project/no_plugin.cpp "extern \"C\" int something() { return 1; }\n")
 file(WRITE ${WORK}/project/other_abi.cpp [[
@@ -54,8 +37,29 @@ file(WRITE ${WORK}/project/missing_symbol.cpp "int nobody_has_this();\nextern \"
 run(COMMAND ${CMAKE_COMMAND} -S ${WORK}/project -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix
             -DCMAKE_CXX_FLAGS_RELEASE=-O1 "-DCMAKE_CXX_FLAGS=${FLAGS}")
 run(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build)
-run(COMMAND ${WORK}/build/user)
 run(COMMAND ${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/build --output-on-failure OUTPUT "100% tests passed")
+
+# The smoother's examples need no library of the rest.
+get_filename_component(root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
+run(COMMAND ${CMAKE_COMMAND} -S ${root}/examples/smoother -B ${WORK}/smoother -G ${GENERATOR}
+            -DCMAKE_PREFIX_PATH=${WORK}/prefix "-DCMAKE_CXX_FLAGS=${FLAGS}")
+run(COMMAND ${CMAKE_COMMAND} --build ${WORK}/smoother)
+run(COMMAND ${WORK}/smoother/circle OUTPUT "error 0[.]0[0-9]+ m, sigma 0[.]0[0-9]+ m")
+run(COMMAND ${WORK}/smoother/solve_file ${WORK}/none.txt REFUSED "none.txt")
+if(DEFINED ENV{EVBENCH_PROBLEMS})
+  run(COMMAND ${WORK}/smoother/solve_file $ENV{EVBENCH_PROBLEMS}/small.txt.gz OUTPUT "cost [0-9]")
+endif()
+find_program(READELF readelf REQUIRED)
+execute_process(COMMAND ${READELF} -d ${WORK}/smoother/circle OUTPUT_VARIABLE needed COMMAND_ERROR_IS_FATAL ANY)
+if(needed MATCHES "opencv|tbb|yaml|archive|hdf5|ssl|crypto")
+  message(SEND_ERROR "a program that uses the smoother alone needs ${needed}; expected cholmod and what it stands on")
+endif()
+
+# Strangers include <evbench/...> and find nothing else.
+file(GLOB folders RELATIVE ${WORK}/prefix/include ${WORK}/prefix/include/*)
+if(NOT folders STREQUAL "evbench" OR EXISTS ${WORK}/prefix/include/evbench/eval)
+  message(SEND_ERROR "headers are installed in ${folders}; expected evbench alone, without evbench/eval")
+endif()
 
 foreach(kind IN LISTS kinds)
   set(library ${WORK}/build/libmy_${kind}.so)
@@ -95,4 +99,14 @@ run(COMMAND ${evbench} --plugin ${WORK}/build/odd/libother_abi.so list REFUSED "
 run(COMMAND ${evbench} --plugin ${WORK}/build/odd/libmissing_symbol.so list REFUSED "undefined symbol: .*nobody_has_this")
 run(COMMAND ${evbench} --plugin ${WORK}/build --plugin ${WORK}/twin.so list
     REFUSED "two sources are called \"my_source\".*libmy_source.so.*twin.so")
+
+# A plugin that was built with other headers is refused, though nobody raised the version.
+set(header ${WORK}/prefix/include/evbench/core/plugin/backend.hpp)
+file(READ ${header} content)
+string(REPLACE "virtual void finish() = 0;" "virtual void finish() = 0; virtual void changed() {}" content "${content}")
+file(WRITE ${header} "${content}")
+run(COMMAND ${CMAKE_COMMAND} -S ${WORK}/project/my_minimal -B ${WORK}/changed -G ${GENERATOR}
+            -DCMAKE_PREFIX_PATH=${WORK}/prefix "-DCMAKE_CXX_FLAGS=${FLAGS}")
+run(COMMAND ${CMAKE_COMMAND} --build ${WORK}/changed)
+run(COMMAND ${evbench} --plugin ${WORK}/changed/libmy_minimal.so list REFUSED "it has api [0-9]+ with headers ")
 file(REMOVE_RECURSE ${WORK})

@@ -1,6 +1,5 @@
 // The entry points that make a shared library an evbench plugin: evbench_add_plugin compiles them into each plugin.
-#include "core/plugin/abi.hpp"
-#include "core/plugin/registration.hpp"
+#include <evbench/plugin_entry.hpp>
 
 extern "C" __attribute__((visibility("default"))) const char* evbench_plugin_abi() { return evbench::plugin_abi(); }
 

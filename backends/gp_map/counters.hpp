@@ -10,34 +10,47 @@ namespace evbench::gp_map {
 enum class Count {
   initial_maps,
   initial_maps_rejected,
-  landmarks,               ///< that tracks became
-  landmarks_without_depth, ///< of these: at the scene's depth, until they show parallax
-  misfits,                 ///< attempts to triangulate a track that no point fits
-  leverage_bounded,        ///< landmarks
-  outliers,                ///< landmarks removed
-  truncated,               ///< landmarks whose tracks drifted later
-  noisier_tracks,          ///< tracks that got larger sigmas than others
-  relaxations_tried,       ///< control states for which weaker priors were tried
-  priors_relaxed,          ///< of these: for which one was kept
+  landmarks,                ///< that tracks became
+  landmarks_without_depth,  ///< of these: at the scene's depth, until they show parallax
+  misfits,                  ///< attempts to triangulate a track that no point fits
+  leverage_bounded,         ///< landmarks
+  outliers,                 ///< landmarks removed
+  truncated,                ///< landmarks whose tracks drifted later
+  noisier_tracks,           ///< tracks that got larger sigmas than others
+  relaxations_tried,        ///< control states for which weaker priors were tried
+  priors_relaxed,           ///< of these: for which one was kept
   searches,
   alternatives_accepted,
-  reacquired,              ///< tracks that continue their landmark
-  reacquired_as_new,       ///< tracks that became another landmark
+  reacquired,         ///< tracks that continue their landmark
+  reacquired_as_new,  ///< tracks that became another landmark
   reassociations_rejected,
   scale_anchored_anew,
-  updates,                 ///< of the smoother, without those of searches and of the final estimate
-  updates_damped,          ///< of these, those whose step would have raised the cost
-  stages,                  ///< that the updates redid
+  updates,         ///< of the smoother, without those of searches and of the final estimate
+  updates_damped,  ///< of these, those whose step would have raised the cost
+  stages,          ///< that the updates redid
   count,
 };
 
 inline constexpr std::array<const char*, static_cast<std::size_t>(Count::count)> kCountNames = {
-    "initial_maps",     "initial_maps_rejected", "landmarks",
-    "landmarks_without_depth", "misfits",        "leverage_bounded",
-    "outliers",         "truncated",             "noisier_tracks",
-    "relaxations_tried", "priors_relaxed",   "searches",              "alternatives_accepted",
-    "reacquired",       "reacquired_as_new",     "reassociations_rejected",
-    "scale_anchored_anew", "updates",            "updates_damped",
+    "initial_maps",
+    "initial_maps_rejected",
+    "landmarks",
+    "landmarks_without_depth",
+    "misfits",
+    "leverage_bounded",
+    "outliers",
+    "truncated",
+    "noisier_tracks",
+    "relaxations_tried",
+    "priors_relaxed",
+    "searches",
+    "alternatives_accepted",
+    "reacquired",
+    "reacquired_as_new",
+    "reassociations_rejected",
+    "scale_anchored_anew",
+    "updates",
+    "updates_damped",
     "stages"};
 
 /// Of one run, over all its maps.

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "backends/gp_map/factors.hpp"
+#include "core/smoother/factors.hpp"
 #include "core/support/median.hpp"
 
 namespace evbench::gp_map {
@@ -40,7 +40,7 @@ void Estimate::end_step() {
 }
 
 void Estimate::update() {
-  last_update = engine.update();
+  last_update = smoother.update();
   count(Count::updates);
   if (last_update.damping > 0.0) count(Count::updates_damped);
   count(Count::stages, last_update.stages);
@@ -48,7 +48,7 @@ void Estimate::update() {
 
 int Estimate::add_landmark(const Vector3& guess, const LandmarkPrior& prior) {
   factors_.emplace_back();
-  return engine.add_landmark(guess, prior);
+  return smoother.add_landmark(guess, prior);
 }
 
 void Estimate::remove_landmark(int landmark) {
@@ -57,10 +57,10 @@ void Estimate::remove_landmark(int landmark) {
     for (const auto& group : graph().intervals.back().groups()) {
       if (group.landmark != landmark) anchors.insert(group.landmark);
     }
-    engine.anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
+    smoother.anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
     count(Count::scale_anchored_anew);
   }
-  engine.remove_landmark(landmark);
+  smoother.remove_landmark(landmark);
 }
 
 void Estimate::set_track_noise(int landmark, double factor) {
@@ -76,17 +76,17 @@ void Estimate::set_leverage(int landmark, double factor) {
 void Estimate::scale_sigmas(int landmark) {
   const Factors& factors = factors_[index(landmark)];
   const double scale = std::max(factors.noise, factors.leverage);
-  if (scale != graph().landmarks[index(landmark)].sigma_scale) engine.scale_sigmas(landmark, scale);
+  if (scale != graph().landmarks[index(landmark)].sigma_scale) smoother.scale_sigmas(landmark, scale);
 }
 
 std::optional<Matrix3> Estimate::kept_covariance(int landmark) {
   std::optional<Matrix3>& kept = covariances_[landmark];
-  if (!kept) kept = engine.landmark_covariance(landmark);
+  if (!kept) kept = smoother.landmark_covariance(landmark);
   return kept;
 }
 
 const std::optional<Matrix12>& Estimate::newest_covariance() {
-  if (newest_covariance_.first != steps_) newest_covariance_ = {steps_, engine.covariance(now())};
+  if (newest_covariance_.first != steps_) newest_covariance_ = {steps_, smoother.covariance(now())};
   return newest_covariance_.second;
 }
 

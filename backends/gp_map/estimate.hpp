@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "backends/gp_map/counters.hpp"
-#include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/modules/noise_learning.hpp"
+#include "backends/gp_map/smoother.hpp"
 
 namespace evbench::gp_map {
 
@@ -18,16 +18,16 @@ class Estimate {
  public:
   /// `first`: the problem of an initial map; `enough`: landmarks in view that show fully that the camera moves;
   /// `tentative`: see is_tentative() [s].
-  Estimate(FactorGraph first, const EngineOptions& options, int enough, double tentative, Counters& counters)
-      : engine(std::move(first), options), enough_(enough), tentative_(tentative), counters_(counters) {
+  Estimate(FactorGraph first, const SmootherOptions& options, int enough, double tentative, Counters& counters)
+      : smoother(std::move(first), options), enough_(enough), tentative_(tentative), counters_(counters) {
     factors_.resize(graph().landmarks.size());
   }
 
-  Engine engine;
+  Smoother smoother;
   UpdateSummary last_update;
   NoiseLearner noise;
 
-  const FactorGraph& graph() const { return engine.graph(); }
+  const FactorGraph& graph() const { return smoother.graph(); }
   const ControlState& newest() const { return graph().states.back(); }
   double now() const { return newest().t; }
   int enough() const { return enough_; }

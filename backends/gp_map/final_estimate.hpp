@@ -6,7 +6,7 @@ namespace evbench::gp_map {
 
 /// The final estimate, with all data known: estimates prior, noise and the weights of the tracks from the trajectory,
 /// and the trajectory with them. Only with full history.
-Engine::OptimiseSummary estimate_everything(Map& map, TrackTable& tracks, const Options& options);
+OptimiseSummary estimate_everything(Map& map, TrackTable& tracks, const Options& options);
 
 /// The same for a lag: prior and noise of what has not been marginalised.
 void estimate_remaining(Map& map, TrackTable& tracks, const Options& options);

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "backends/gp_map/final_estimate.hpp"
-#include "backends/gp_map/problem_graph.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/smoother/problem_graph.hpp"
 #include "core/support/seconds_since.hpp"
 
 namespace evbench::gp_map {
@@ -50,9 +50,9 @@ void GpMap::step(double t) {
   if (map_ || initialise(t)) {
     Estimate& estimate = map_->estimate;
     map_->outliers.reject_newest(estimate, tracks_);
-    map_->follower.close(estimate.engine, t);
-    if (estimate.now() < t) add_extrapolated_state(estimate.engine, t);
-    for (const auto& [landmark, z] : tracks_.take_observations()) estimate.engine.add_observation(landmark, z);
+    map_->follower.close(estimate.smoother, t);
+    if (estimate.now() < t) estimate.smoother.add_state(t);
+    for (const auto& [landmark, z] : tracks_.take_observations()) estimate.smoother.add_observation(landmark, z);
     map_->triangulation.drop_guesses(estimate);
     map_->triangulation.add(estimate, tracks_);
     map_->leverage.apply(estimate);
@@ -87,9 +87,10 @@ bool GpMap::initialise(double t) {
   map_.emplace(std::move(first->graph), options_, rejected, counters_);
   for (std::size_t j = 0; j < first->tracks.size(); ++j) tracks_.become_landmark(first->tracks[j], static_cast<int>(j));
   ++counters_[Count::initial_maps];
-  report("initialised", fmt::format("initial map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
-                                    graph().landmarks.size(), graph().observation_count(), first->parallax_deg,
-                                    graph().states.front().t));
+  report("initialised",
+         fmt::format("initial map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
+                     graph().landmarks.size(), graph().observation_count(), first->parallax_deg,
+                     graph().states.front().t));
   return true;
 }
 
@@ -98,7 +99,7 @@ void GpMap::learn() {
   Estimate& estimate = map_->estimate;
   if (options_.learn.noise) {
     estimate.noise.follow(graph(), options_.learn.memory);
-    estimate.engine.set_loss(estimate.noise.loss(options_.loss, options_.loss_width));
+    estimate.smoother.set_loss(estimate.noise.loss(options_.loss, options_.loss_width));
   }
   map_->prior.follow(estimate);
   if (options_.learn.prior != LearnPrior::always) map_->relaxation.recover(estimate);
@@ -121,7 +122,7 @@ void GpMap::adopt(const AlternativeEstimate& other) {
   const bool everything = other.first == 0;
   report("hypothesis_accepted", fmt::format("a better alternative estimate of {}, by {:.1f}",
                                             everything ? "everything" : "the recent part", other.advantage));
-  other.place_in(estimate.engine);
+  other.place_in(estimate.smoother);
   const auto known = static_cast<int>(graph().landmarks.size());
   if (everything) {
     tracks_.recall([this](int landmark) { return graph().landmarks[index(landmark)].alive; });
@@ -175,9 +176,9 @@ void GpMap::check_support() {
   }
   if (!monitor_.lost()) return;
   // States without data are removed.
-  const auto oldest = index(estimate.engine.first_state());  // with a lag, older states are marginalised
+  const auto oldest = index(estimate.smoother.first_state());  // with a lag, older states are marginalised
   while (graph().states.size() > oldest + 2 && graph().states.back().t > monitor_.status().time) {
-    estimate.engine.remove_newest_state();
+    estimate.smoother.remove_newest_state();
   }
 }
 
@@ -185,8 +186,7 @@ void GpMap::check_support() {
 void GpMap::predict_next_state() {
   constexpr double kLargestSpread = 2.0;
   const NoiseLearner& learnt = map_->estimate.noise;
-  const double noise =
-      std::min(kLargestSpread * learnt.scale(), learnt.scale_of_means()) * options_.sigma_scale;
+  const double noise = std::min(kLargestSpread * learnt.scale(), learnt.scale_of_means()) * options_.sigma_scale;
   placement_.predict([this, noise, newest = graph().states.back()](const TrackObservation& z) {
     std::optional<double> deviation;
     const TrackTable::Track* const track = tracks_.find(z.track);
@@ -207,9 +207,9 @@ void GpMap::follow_observations(double t, double ahead) {
   const auto start = std::chrono::steady_clock::now();
   take_observations(t);
   const auto observations = tracks_.take_observations();
-  if (!observations.empty()) map_->follower.open(map_->estimate.engine, ahead);
+  if (!observations.empty()) map_->follower.open(map_->estimate.smoother, ahead);
   for (const auto& [landmark, z] : observations) {
-    map_->follower.follow(map_->estimate.engine, landmark, z);
+    map_->follower.follow(map_->estimate.smoother, landmark, z);
     publish_newest(z.t);
   }
   seconds_since_step_ += seconds_since(start);
@@ -228,12 +228,12 @@ void GpMap::finish() {
   Estimate& estimate = map_->estimate;
   const auto start = std::chrono::steady_clock::now();
   if (options_.final_iterations == 0) {
-    estimate.engine.settle();
+    estimate.smoother.update_everything();
   } else if (options_.lag > 0.0) {
     estimate_remaining(*map_, tracks_, options_);
     add_record(estimate.now(), seconds_since(start), options_.learn.rounds, {});
   } else {
-    const Engine::OptimiseSummary summary = estimate_everything(*map_, tracks_, options_);
+    const OptimiseSummary summary = estimate_everything(*map_, tracks_, options_);
     report("final_estimate",
            fmt::format("final estimate: cost {:.2f} after {:.2f}, {} iterations{}", summary.final_cost,
                        summary.initial_cost, summary.iterations, summary.converged ? "" : ", not converged"));
@@ -292,7 +292,7 @@ void GpMap::publish_newest(double t) {
 /// Publishes the newest state, and the recent ones again: new observations improve them, too.
 void GpMap::publish_recent(double t) {
   if (graph().states.back().t != t) return;  // it has been removed
-  map_->recent.follow(graph(), map_->estimate.engine.first_state());
+  map_->recent.follow(graph(), map_->estimate.smoother.first_state());
   if (is_pending()) return;
   const auto states = map_->recent.states();
   if (options_.per_observation) {
@@ -319,7 +319,7 @@ std::optional<Vector6> GpMap::velocity(double t) const { return map_ ? map_->est
 
 std::optional<Matrix12> GpMap::covariance(double t) {
   if (!map_ || is_pending()) return std::nullopt;
-  auto result = map_->estimate.engine.covariance(t);
+  auto result = map_->estimate.smoother.covariance(t);
   if (result) *result *= information_share_;
   return result;
 }
@@ -331,7 +331,7 @@ std::optional<Matrix6> GpMap::relative_covariance(double t0, double t1) {
     return static_cast<int>(found - graph().states.begin());
   };
   const int i = state_at(t0), j = state_at(t1);
-  const std::optional<Matrix12> joint = map_->estimate.engine.poses(i, j);
+  const std::optional<Matrix12> joint = map_->estimate.smoother.poses(i, j);
   if (!joint) return std::nullopt;
   const SE3 inverse = graph().states[index(j)].T.inverse() * graph().states[index(i)].T;
   Eigen::Matrix<double, 6, 12> J;  // (T_i Exp δ_i)⁻¹ T_j Exp δ_j = T_i⁻¹ T_j Exp(δ_j − Ad(T_j⁻¹ T_i) δ_i)

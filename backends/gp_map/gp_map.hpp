@@ -78,11 +78,11 @@ class GpMap : public BackEnd {
   std::optional<Map> map_;  ///< from the initial map on, unless it is rejected
   Counters counters_;
   TrackingMonitor monitor_;
-  const double information_share_;          ///< factor of covariances: RobustLoss::information_share()
-  bool reinitialised_ = false;              ///< since the last feedback
-  double seconds_since_step_ = 0.0;         ///< spent on single observations
-  double until_ = 0.0;                      ///< [s] end of the last batch
-  std::optional<double> published_;         ///< [s] time of the last published pose
+  const double information_share_;   ///< factor of covariances: RobustLoss::information_share()
+  bool reinitialised_ = false;       ///< since the last feedback
+  double seconds_since_step_ = 0.0;  ///< spent on single observations
+  double until_ = 0.0;               ///< [s] end of the last batch
+  std::optional<double> published_;  ///< [s] time of the last published pose
   std::vector<UpdateRecord> updates_;
 };
 

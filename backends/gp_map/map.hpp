@@ -11,12 +11,12 @@
 
 namespace evbench::gp_map {
 
-/// One map: its estimate and the modules that work on it. A module gets the estimate and the table of tracks, and sees no
-/// other module.
+/// One map: its estimate and the modules that work on it. A module gets the estimate and the table of tracks, and sees
+/// no other module.
 struct Map {
   /// `first`: the problem of an initial map; `rejected`: how many initial maps were rejected before.
   Map(FactorGraph first, const Options& options, int rejected, Counters& counters)
-      : estimate(std::move(first), EngineOptions{.lag = options.lag}, options.health.min_landmarks,
+      : estimate(std::move(first), SmootherOptions{.lag = options.lag}, options.health.min_landmarks,
                  options.map.tentative, counters),
         triangulation(options.map, options.sigma_scale),
         leverage(options.leverage),
@@ -44,9 +44,9 @@ struct Map {
   MapCheck check;
   Reassociation reassociation;
   FeaturePrediction prediction;
-  RecentMotion recent;          ///< smoothed for causal poses
-  ObservationFollower follower; ///< between two states
-  double next_learning;         ///< [s] time of the next smoothed estimates of prior and noise
+  RecentMotion recent;           ///< smoothed for causal poses
+  ObservationFollower follower;  ///< between two states
+  double next_learning;          ///< [s] time of the next smoothed estimates of prior and noise
 };
 
 }  // namespace evbench::gp_map

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/engine/engine.hpp"
+#include "backends/gp_map/smoother.hpp"
 
 namespace evbench::gp_map {
 
@@ -12,21 +12,17 @@ namespace evbench::gp_map {
 class ObservationFollower {
  public:
   /// Adds a state ahead, at this time, unless there is one.
-  void open(Engine& engine, double ahead);
+  void open(Smoother& smoother, double ahead);
 
-  void follow(Engine& engine, int landmark, const Observation& observation);
+  void follow(Smoother& smoother, int landmark, const Observation& observation);
 
   /// The next control state will be at t. If the state ahead is later, it moves to t, and the followed observations are
   /// added again.
-  void close(Engine& engine, double t);
+  void close(Smoother& smoother, double t);
 
  private:
   bool open_ = false;
   std::vector<std::pair<int, Observation>> followed_;
 };
-
-/// Adds a state at t, extrapolated from the newest one with constant velocity (paper, Algorithm 1: extrapolation of the
-/// GP).
-void add_extrapolated_state(Engine& engine, double t);
 
 }  // namespace evbench::gp_map

@@ -13,8 +13,9 @@
 #include "backends/gp_map/modules/reassociation.hpp"
 #include "backends/gp_map/modules/state_placement.hpp"
 #include "backends/gp_map/modules/track_noise.hpp"
-#include "backends/gp_map/robust_loss.hpp"
+#include "backends/gp_map/smoother.hpp"
 #include "core/plugin/options.hpp"
+#include "core/smoother/robust_loss.hpp"
 #include "core/structure/initialiser.hpp"
 
 namespace evbench::gp_map {

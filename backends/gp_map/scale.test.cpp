@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "backends/gp_map/factors.hpp"
 #include "backends/gp_map/gp_map.hpp"
 #include "backends/gp_map/testing/tracked_scene.hpp"
+#include "core/smoother/factors.hpp"
 #include "core/support/index.hpp"
 #include "core/testing/catch2.hpp"
 

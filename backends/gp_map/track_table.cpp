@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "backends/gp_map/problem_graph.hpp"
+#include "core/smoother/problem_graph.hpp"
 
 namespace evbench::gp_map {
 

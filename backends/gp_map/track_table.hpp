@@ -7,8 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/factor_graph.hpp"
+#include "backends/gp_map/smoother.hpp"
 #include "core/plugin/exchange.hpp"
+#include "core/smoother/factor_graph.hpp"
 #include "core/structure/track_buffer.hpp"
 
 namespace evbench::gp_map {
@@ -33,9 +34,9 @@ class TrackTable {
 
   struct Track {
     Role role = Role::waiting;
-    int landmark = -1;        ///< its index in the estimate
-    int tried_with = 0;       ///< observations at the last failed triangulation
-    bool misfit = false;      ///< that failed because no point fits them
+    int landmark = -1;    ///< its index in the estimate
+    int tried_with = 0;   ///< observations at the last failed triangulation
+    bool misfit = false;  ///< that failed because no point fits them
     bool ended = false;
     bool mismatched = false;  ///< until it ends, it does not show its landmark
   };

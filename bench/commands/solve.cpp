@@ -4,7 +4,7 @@
 #include <map>
 #include <memory>
 
-#include "backends/gp_map/problem_solver.hpp"
+#include "core/smoother/problem_solver.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/number_check.hpp"
 #include "core/io/atomic_file.hpp"
@@ -15,18 +15,18 @@
 namespace evbench {
 namespace {
 
-const std::map<std::string, gp_map::SolveMode> kModes = {{"incremental", gp_map::SolveMode::incremental},
-                                                         {"batch", gp_map::SolveMode::batch},
-                                                         {"fixed-lag", gp_map::SolveMode::fixed_lag}};
+const std::map<std::string, smoother::SolveMode> kModes = {{"incremental", smoother::SolveMode::incremental},
+                                                         {"batch", smoother::SolveMode::batch},
+                                                         {"fixed-lag", smoother::SolveMode::fixed_lag}};
 
 struct SolveArguments {
   std::string problem, json, states, steps;
   bool check = false;
-  gp_map::SolveOptions options;
+  smoother::SolveOptions options;
 };
 
-Json report(const SolveArguments& arguments, const gp_map::SolveResult& result) {
-  const gp_map::Cost cost = evaluate(result.graph);
+Json report(const SolveArguments& arguments, const smoother::SolveResult& result) {
+  const smoother::Cost cost = evaluate(result.graph);
   if (!std::isfinite(cost.total())) throw InputError(arguments.problem + ": the solution's cost is not finite");
   Json json = {{"problem", arguments.problem},
                {"cost", cost.total()},
@@ -47,7 +47,7 @@ Json report(const SolveArguments& arguments, const gp_map::SolveResult& result) 
 }
 
 /// STATE and LM records with the final estimate.
-std::string format_states(const gp_map::FactorGraph& graph) {
+std::string format_states(const smoother::FactorGraph& graph) {
   Problem problem;
   problem.camera = graph.camera;
   problem.qc = graph.qc;
@@ -55,10 +55,10 @@ std::string format_states(const gp_map::FactorGraph& graph) {
   return format_problem(problem);
 }
 
-std::string format_steps(const gp_map::SolveResult& result) {
+std::string format_steps(const smoother::SolveResult& result) {
   std::string text = "step,ms,first_stage,stages,solved_back,linearised,damping,rejected\n";
   for (std::size_t k = 0; k < result.updates.size(); ++k) {
-    const gp_map::UpdateSummary& u = result.updates[k];
+    const smoother::UpdateSummary& u = result.updates[k];
     text += fmt::format("{},{:.4f},{},{},{},{},{:g},{}\n", k, result.step_ms[k], u.first_stage, u.stages, u.solved_back,
                         u.linearised, u.damping, u.rejected ? 1 : 0);
   }
@@ -66,7 +66,7 @@ std::string format_steps(const gp_map::SolveResult& result) {
 }
 
 void execute(const SolveArguments& arguments) {
-  const gp_map::SolveResult result = gp_map::solve_problem(read_problem(arguments.problem), arguments.options);
+  const smoother::SolveResult result = smoother::solve_problem(read_problem(arguments.problem), arguments.options);
   const Json json = report(arguments, result);
   fmt::print("{}\n", dump_json(json, 2));
   if (!arguments.json.empty()) write_file(arguments.json, dump_json(json, 2) + "\n");
@@ -103,7 +103,7 @@ void add_solve(CLI::App& app) {
   command->add_option("--iterations", arguments->options.max_iterations, "Iterations of batch mode, at most")
       ->check(above_zero())
       ->capture_default_str();
-  gp_map::EngineOptions& engine = arguments->options.engine;
+  smoother::SmootherOptions& engine = arguments->options.engine;
   command->add_option("--relinearise", engine.relinearise, "Relinearise and redo from increments of this size [rad]")
       ->check(not_negative())
       ->capture_default_str();

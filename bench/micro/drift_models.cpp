@@ -46,8 +46,8 @@
 namespace {
 
 using namespace evbench;
-using gp_map::FactorGraph;
-using gp_map::RobustLoss;
+using smoother::FactorGraph;
+using smoother::RobustLoss;
 
 constexpr double kExchange = 0.01;  ///< [s]
 constexpr double kLossWidth = 2.0;  ///< [sigmas], as gp_map has it
@@ -201,7 +201,7 @@ Outcome solve(FactorGraph graph, const Errors& errors, const Source& source, con
   graph.loss = errors.loss;
   DriftProblem problem(std::move(graph), errors.drift);
   const std::clock_t start = std::clock();
-  const gp_map::BatchSummary summary = problem.solve({50, 1e-6});
+  const smoother::BatchSummary summary = problem.solve({50, 1e-6});
   Outcome result;
   const std::clock_t spent = std::clock() - start;
   if (!summary.failure.empty()) throw InputError(fmt::format("seed {}: {}", run.job.seed, summary.failure));

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <utility>
 
-#include "backends/gp_map/factors.hpp"
+#include "core/smoother/factors.hpp"
 #include "core/geometry/seen_point.hpp"
 #include "core/support/index.hpp"
 
 namespace evbench {
 
-using namespace gp_map;
+using namespace smoother;
 
 DriftProblem::DriftProblem(FactorGraph graph, const DriftModel& model)
     : graph_(std::move(graph)), layout_(graph_), observed_(graph_.intervals), offset_of_(observed_.size()) {

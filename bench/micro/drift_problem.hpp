@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "backends/gp_map/graph_variables.hpp"
+#include "core/smoother/graph_variables.hpp"
 
 namespace evbench {
 
@@ -18,25 +18,25 @@ struct DriftModel {
 /// o the offset of the landmark's track in the window that holds t, a Gauss-Markov chain by DriftModel.
 class DriftProblem {
  public:
-  DriftProblem(gp_map::FactorGraph graph, const DriftModel& model);
+  DriftProblem(smoother::FactorGraph graph, const DriftModel& model);
 
   /// By minimise(), from the graph's estimate and offsets of zero.
-  gp_map::BatchSummary solve(const gp_map::BatchOptions& options);
+  smoother::BatchSummary solve(const smoother::BatchOptions& options);
 
   /// With the estimate; the offsets are taken from its observations.
-  const gp_map::FactorGraph& graph() const { return graph_; }
-  const gp_map::GraphLayout& layout() const { return layout_; }
+  const smoother::FactorGraph& graph() const { return graph_; }
+  const smoother::GraphLayout& layout() const { return layout_; }
   int unknowns() const { return layout_.size + 2 * static_cast<int>(offsets_.size()); }
 
   // The interface that minimise() needs.
   struct Estimate {
-    gp_map::GraphEstimate graph;
+    smoother::GraphEstimate graph;
     std::vector<Vector2> offsets;
   };
   double cost() const;
-  gp_map::NormalEquations linearise() const;
+  smoother::NormalEquations linearise() const;
   void apply(const Eigen::VectorXd& step);
-  Estimate estimate() const { return {gp_map::GraphEstimate(graph_), offsets_}; }
+  Estimate estimate() const { return {smoother::GraphEstimate(graph_), offsets_}; }
   void restore(const Estimate& estimate);
 
  private:
@@ -50,11 +50,11 @@ class DriftProblem {
   int column(int offset) const { return layout_.size + 2 * offset; }
   Vector2 innovation(int offset) const;
   void take_offsets_away();
-  void add_interval(int k, gp_map::NormalEquations& equations) const;
+  void add_interval(int k, smoother::NormalEquations& equations) const;
 
-  gp_map::FactorGraph graph_;
-  gp_map::GraphLayout layout_;
-  std::vector<gp_map::IntervalObservations> observed_;  ///< with the offsets in them
+  smoother::FactorGraph graph_;
+  smoother::GraphLayout layout_;
+  std::vector<smoother::IntervalObservations> observed_;  ///< with the offsets in them
   std::vector<std::vector<int>> offset_of_;             ///< by interval and observation; empty: there are none
   std::vector<Vector2> offsets_;                        ///< [stated sigmas]
   std::vector<Link> links_;                             ///< of each
@@ -70,7 +70,7 @@ class DriftCovariance {
 
  private:
   const DriftProblem& problem_;
-  gp_map::SparseCholesky cholesky_;
+  smoother::SparseCholesky cholesky_;
 };
 
 }  // namespace evbench

@@ -14,9 +14,9 @@
 namespace evbench {
 namespace {
 
-using gp_map::BatchOptions;
-using gp_map::FactorGraph;
-using gp_map::RobustLoss;
+using smoother::BatchOptions;
+using smoother::FactorGraph;
+using smoother::RobustLoss;
 
 constexpr int kStates = 21;
 constexpr double kInterval = 0.05, kSigma = 0.1;  ///< [s], [px]
@@ -103,7 +103,7 @@ TEST_CASE("Offsets with zero variance change nothing") {
   Drawn drawn = draw({1.0, 0.0, 0.3}, 1);
   drawn.graph.loss = RobustLoss(RobustLoss::Kind::cauchy, 2.0);
   FactorGraph white = drawn.graph;
-  gp_map::solve_batch(white, kExactly);
+  smoother::solve_batch(white, kExactly);
   for (const DriftModel& model : {DriftModel{1e-6, 0.0, 0.3}, DriftModel{1e-6, 0.1, 0.3}, DriftModel{1e-6, 0.1, 0.0},
                                   DriftModel{1e-6, std::numeric_limits<double>::infinity(), 0.0}, DriftModel{}}) {
     DriftProblem problem(drawn.graph, model);

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <vector>
 
-#include "backends/gp_map/engine/dense_kernels.hpp"
+#include "core/smoother/engine/dense_kernels.hpp"
 
 namespace {
 
-using namespace evbench::gp_map;
+using namespace evbench::smoother;
 
 constexpr int kLargest = 4096;  ///< rows that are measured, not only counted
 

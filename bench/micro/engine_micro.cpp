@@ -9,15 +9,15 @@
 #include <cmath>
 #include <vector>
 
-#include "backends/gp_map/engine/engine.hpp"
-#include "backends/gp_map/problem_graph.hpp"
+#include "core/smoother/smoother.hpp"
+#include "core/smoother/problem_graph.hpp"
 #include "core/support/index.hpp"
 #include "core/support/seconds_since.hpp"
 
 namespace {
 
 using namespace evbench;
-using namespace evbench::gp_map;
+using namespace evbench::smoother;
 
 template <class Call>
 double median_seconds(int repetitions, Call call) {
@@ -102,7 +102,7 @@ void per_observation(const FactorGraph& all) {
   const std::size_t count = std::min<std::size_t>(all.states.size() - 1, 100);
   FactorGraph start = all;
   while (start.states.size() > count) start.remove_newest_state();
-  Engine engine(start, {});
+  Smoother engine(start, {});
   engine.optimise(10, 1e-8);
   std::vector<double> microseconds;
   for (std::size_t k = count; k < std::min(count + 100, all.states.size()); ++k) {
@@ -120,7 +120,7 @@ void per_observation(const FactorGraph& all) {
     std::ranges::stable_sort(sequence, {}, [](const auto& z) { return z.second.t; });
     for (const auto& [landmark, z] : sequence) {
       const auto begin = std::chrono::steady_clock::now();
-      if (engine.observe(landmark, z)) microseconds.push_back(1e6 * seconds_since(begin));
+      if (engine.add_observation_and_update(landmark, z)) microseconds.push_back(1e6 * seconds_since(begin));
     }
     engine.update();
   }

@@ -14,14 +14,14 @@
 #include <string_view>
 #include <vector>
 
-#include "backends/gp_map/problem_solver.hpp"
+#include "core/smoother/problem_solver.hpp"
 #include "bench/micro/track_problem.hpp"
 #include "eval/quantile.hpp"
 
 namespace {
 
 using namespace evbench;
-using gp_map::FactorGraph;
+using smoother::FactorGraph;
 
 constexpr double kRowsOfStates = 24.0;
 
@@ -51,7 +51,7 @@ class Operations {
   double root_rows() const { return 12.0 + 3.0 * quantile_of(live_, 0.5); }
 
   /// Of the update with state k: stages by their rank updates, the root's factor, back-substitution, linearisation.
-  double of(std::size_t k, const gp_map::UpdateSummary& update) const {
+  double of(std::size_t k, const smoother::UpdateSummary& update) const {
     constexpr double kObservation = 1050.0;  // one in observation_sums.hpp
     const auto first = static_cast<std::size_t>(std::max(update.first_stage, 0));
     double stages = 0.0, pairs = 0.0;
@@ -74,7 +74,7 @@ class Operations {
 
 /// GFlop/s of Eigen's and of the engine's dense Cholesky factorisation.
 std::array<double, 2> cholesky_gflops(double rows) {
-  const int n = gp_map::padded(static_cast<int>(rows));
+  const int n = smoother::padded(static_cast<int>(rows));
   const Eigen::MatrixXd G = Eigen::MatrixXd::Constant(n, n, 0.1);
   const Eigen::MatrixXd H = G + n * Eigen::MatrixXd::Identity(n, n);
   Eigen::LLT<Eigen::MatrixXd> llt(n);
@@ -82,14 +82,14 @@ std::array<double, 2> cholesky_gflops(double rows) {
   const double eigen = median_seconds(50, [&] { llt.compute(H); });
   const double own = median_seconds(50, [&] {
     L = H;
-    gp_map::cholesky_blocked(L.data(), n, n, 0.0);
+    smoother::cholesky_blocked(L.data(), n, n, 0.0);
   });
   const double giga = 1e-9 * n * n * n / 3.0;
   return {giga / eigen, giga / own};
 }
 
 double million_observations_linearised_a_second(const FactorGraph& graph) {
-  gp_map::IntervalLinearisation linear;
+  smoother::IntervalLinearisation linear;
   const double seconds = median_seconds(5, [&] {
     for (int k = 1; k < static_cast<int>(graph.states.size()); ++k) linearise_interval(graph, k, linear);
   });
@@ -98,7 +98,7 @@ double million_observations_linearised_a_second(const FactorGraph& graph) {
 
 void measure(const std::string& name, const TrackProblemOptions& options) {
   const Problem problem = make_track_problem(options);
-  const gp_map::SolveResult result = gp_map::solve_problem(problem, {});
+  const smoother::SolveResult result = smoother::solve_problem(problem, {});
   const Operations operations(result.graph);
   std::vector<double> stages, solved_back;
   double flops = 0.0;

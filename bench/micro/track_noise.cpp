@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "backends/gp_map/factors.hpp"
+#include "core/smoother/factors.hpp"
 #include "core/support/index.hpp"
 #include "core/support/median.hpp"
 
@@ -21,7 +21,7 @@ struct Variogram {
   std::vector<double> apart, value;
 };
 
-Variogram variogram_of(const gp_map::FactorGraph& graph) {
+Variogram variogram_of(const smoother::FactorGraph& graph) {
   struct Residual {
     double t;
     Vector2 value;
@@ -29,9 +29,9 @@ Variogram variogram_of(const gp_map::FactorGraph& graph) {
   std::array<std::vector<double>, kApart.size()> squares, times;
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
     std::vector<Residual> track;
-    gp_map::for_each_observation(graph, j, {}, [&](const GpInterval& interval, const gp_map::Observation& z) {
+    smoother::for_each_observation(graph, j, {}, [&](const GpInterval& interval, const smoother::Observation& z) {
       track.push_back(
-          {z.t, gp_map::reprojection_residual(interval, graph.landmarks[index(j)].position, z, graph.camera)});
+          {z.t, smoother::reprojection_residual(interval, graph.landmarks[index(j)].position, z, graph.camera)});
     });
     for (std::size_t lag = 0; lag < kApart.size(); ++lag) {
       std::size_t late = 0;
@@ -57,7 +57,7 @@ Variogram variogram_of(const gp_map::FactorGraph& graph) {
 
 }  // namespace
 
-TrackNoise estimate_noise(const gp_map::FactorGraph& graph) {
+TrackNoise estimate_noise(const smoother::FactorGraph& graph) {
   const Variogram variogram = variogram_of(graph);
   const auto n = static_cast<Eigen::Index>(variogram.value.size());
   const Eigen::ArrayXd apart = Eigen::ArrayXd::Map(variogram.apart.data(), n);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "backends/gp_map/factor_graph.hpp"
+#include "core/smoother/factor_graph.hpp"
 
 namespace evbench {
 
@@ -15,6 +15,6 @@ struct TrackNoise {
 /// landmark over the time between them, at the graph's estimate. Half the mean square difference is
 /// white² + drift² (1 − exp(−Δt/time)), which is independent of the landmark's own position error. Medians are used, so
 /// that outliers count little. Where tracks are too short, the noise is white and as stated.
-TrackNoise estimate_noise(const gp_map::FactorGraph& graph);
+TrackNoise estimate_noise(const smoother::FactorGraph& graph);
 
 }  // namespace evbench

@@ -7,7 +7,7 @@
 namespace evbench {
 namespace {
 
-constexpr const char* kColumns = "kind t0 t1 x y z qx qy qz qw and a covariance of 36 numbers";
+constexpr const char* kRelativePoseColumns = "kind t0 t1 x y z qx qy qz qw and a covariance of 36 numbers";
 constexpr std::size_t kPoseColumns = 10, kAllColumns = kPoseColumns + 36;
 
 }  // namespace
@@ -15,7 +15,7 @@ constexpr std::size_t kPoseColumns = 10, kAllColumns = kPoseColumns + 36;
 std::string format_relative_poses(std::span<const RelativePose> poses) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "# {}\n", kColumns);
+  fmt::format_to(out, "# {}\n", kRelativePoseColumns);
   for (const auto& [kind, t0, t1, T, covariance] : poses) {
     fmt::format_to(out, "{} {} {} {} {} {} {} {} {} {}", kind, t0, t1, T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(),
                    T.q.z(), T.q.w());
@@ -29,7 +29,7 @@ std::vector<RelativePose> read_relative_poses(const std::string& path) {
   std::vector<RelativePose> poses;
   TextReader reader(path);
   while (reader.next()) {
-    reader.expect_columns(kAllColumns, kColumns);
+    reader.expect_columns(kAllColumns, kRelativePoseColumns);
     RelativePose pose;
     pose.kind = reader.columns()[0];
     pose.t0 = reader.number(1, "t0");

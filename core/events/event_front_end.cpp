@@ -29,7 +29,7 @@ bool leave_much_free(int max_x, int max_y, const Camera& camera, std::int64_t ev
 
 }  // namespace
 
-void expect_events(const Source& source, const std::string& place) {
+void expect_events(const SensorData& source, const std::string& place) {
   if (source.silence_is_known()) return;
   std::vector<Event> first;
   if (const auto events = source.events(); !events || events->read(first)) return;

@@ -13,7 +13,7 @@ namespace evbench {
 
 /// Throws InputError if a recording has no events in the source's time range: it is the wrong recording, or is misread.
 /// A simulated camera may see nothing. Reads up to the first event; `place` is the front-end's, for messages.
-void expect_events(const Source& source, const std::string& place);
+void expect_events(const SensorData& source, const std::string& place);
 
 /// Base of the front-ends that process their source's events. Events come in parts. At every tick, 5 ms of data time
 /// apart whatever the exchange interval of the run, and at the end of the time range, on_tick() maintains the tracks.
@@ -53,7 +53,7 @@ class EventFrontEnd : public FrontEnd {
   void follow(double t);
   bool is_over() const { return clock_ >= range_.to || (feed_.ended() && !silence_is_known_); }
 
-  const Source& source_;
+  const SensorData& source_;
   std::string place_;
   EventFeed feed_;
   bool silence_is_known_;

@@ -13,7 +13,16 @@
 
 /// Version of the plugin API. Raised with every incompatible change of the headers that plugins include (core/plugin/
 /// and its includes): a virtual function, a member, a changed meaning.
-#define EVBENCH_PLUGIN_API 10
+#define EVBENCH_PLUGIN_API 11
+
+// Hash of the headers that plugins include, with which this is compiled. The build of evbench and evbench_add_plugin()
+// set it, so that a changed header is noticed even if the version is forgotten.
+#if !defined(EVBENCH_PLUGIN_HEADERS) && __has_include("plugin_headers.hpp")
+#include "plugin_headers.hpp"
+#endif
+#ifndef EVBENCH_PLUGIN_HEADERS
+#define EVBENCH_PLUGIN_HEADERS "unknown"
+#endif
 
 #define EVBENCH_ABI_TEXT_OF(value) #value
 #define EVBENCH_ABI_TEXT(value) EVBENCH_ABI_TEXT_OF(value)
@@ -68,7 +77,7 @@ namespace evbench {
 /// The ABI text of this translation unit: the mark, then parts separated by "; " in a fixed order.
 inline const char* plugin_abi() {
   return EVBENCH_PLUGIN_ABI_MARK
-      "api " EVBENCH_ABI_TEXT(EVBENCH_PLUGIN_API) "; " EVBENCH_ABI_COMPILER "; " EVBENCH_ABI_LIBRARY
+      "api " EVBENCH_ABI_TEXT(EVBENCH_PLUGIN_API) " with headers " EVBENCH_PLUGIN_HEADERS "; " EVBENCH_ABI_COMPILER "; " EVBENCH_ABI_LIBRARY
                                                   "; " EVBENCH_ABI_EIGEN "; " EVBENCH_ABI_JSON
                                                   "; " EVBENCH_ABI_SANITIZER;
 }

@@ -71,13 +71,15 @@ class BackEnd {
   /// Processes a batch (undistorted pixels) and updates the estimate up to batch.until.
   virtual void advance(const TrackBatch& batch) = 0;
 
-  /// The current estimate at batch.until of the last batch. May be called after any advance, or never.
-  virtual Feedback feedback(const FeedbackNeeds& needs) = 0;
+  /// The current estimate at batch.until of the last batch. May be called after any advance, or never. By default there
+  /// is nothing that a front-end could use.
+  virtual Feedback feedback(const FeedbackNeeds& /*needs*/) { return {}; }
 
   /// No more data: computes the final (smoothed) estimate.
   virtual void finish() = 0;
 
-  virtual Status status() const = 0;
+  /// By default ok; the harness takes a back-end without any pose at the end for failed.
+  virtual Status status() const { return {}; }
 
   /// The poses of the estimate: control states or keyframes. Empty before initialisation. Also called during the run,
   /// as is map(), to align the worlds of two back-ends.
@@ -98,7 +100,7 @@ class BackEnd {
   /// poses. Not const, as above.
   virtual std::optional<Matrix6> relative_covariance(double /*t0*/, double /*t1*/) { return std::nullopt; }
 
-  virtual std::vector<Landmark> map() const = 0;
+  virtual std::vector<Landmark> map() const { return {}; }
 
   /// The final estimation problem, for back-ends whose problem has that form.
   virtual std::optional<Problem> problem() const { return std::nullopt; }

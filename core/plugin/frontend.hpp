@@ -12,13 +12,14 @@ namespace evbench {
 
 /// What a front-end gets in addition to its options.
 struct FrontEndContext {
-  const Source& source;  ///< outlives the front-end
+  const SensorData& source;  ///< outlives the front-end
   std::uint64_t seed = 0;
   std::string folder;              ///< base of relative paths in options
   std::string place = "frontend";  ///< place of the options, for messages: "config.json: frontend"
 };
 
-/// A front-end: computes track observations from a source. Each run owns one front-end.
+/// A front-end: computes track observations from a source. Each run owns one front-end. Those that read events derive
+/// from EventFrontEnd (core/events/event_front_end.hpp), which reads them, batches and reports.
 class FrontEnd {
  public:
   virtual ~FrontEnd() = default;

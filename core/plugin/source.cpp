@@ -7,7 +7,7 @@
 
 namespace evbench {
 
-std::unique_ptr<EventStream> Source::events() const {
+std::unique_ptr<EventStream> SensorData::events() const {
   std::unique_ptr<EventReader> reader = all_events();
   if (!reader) return nullptr;
   if (camera().width <= 0 || camera().height <= 0) {

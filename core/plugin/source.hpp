@@ -23,19 +23,16 @@ struct SourceContext {
   std::string place = "source";  ///< place of the options, for messages: "config.json: source"
 };
 
-/// A sequence: a recording or a simulation. All times are sequence time, whose zero the source defines; a run uses
-/// time_range() of it.
-class Source {
+/// What a front-end sees of a sequence: everything but the ground truth. All times are sequence time, whose zero the
+/// source defines; a run uses time_range() of it.
+class SensorData {
  public:
-  virtual ~Source() = default;
+  virtual ~SensorData() = default;
 
   virtual const Camera& camera() const = 0;
 
   /// The time range that a run uses [s]: its clock runs from the beginning to the end, whether or not there are events.
   virtual TimeRange time_range() const = 0;
-
-  /// T_world_camera; empty when unknown.
-  virtual const PoseTrajectory& ground_truth() const = 0;
 
   /// A new stream of the events for a front-end: in time order, within the camera's sensor, from ≤ t ≤ to of the time
   /// range. nullptr for a source of tracks without events. The source must outlive the stream. Throws InputError when
@@ -58,6 +55,13 @@ class Source {
 
   /// Track observations with true association (raw pixels, time order), for simulators. None if it is unknown.
   virtual std::optional<std::span<const TrackObservation>> true_tracks() const { return std::nullopt; }
+};
+
+/// A sequence: a recording or a simulation.
+class Source : public SensorData {
+ public:
+  /// T_world_camera; empty when unknown.
+  virtual const PoseTrajectory& ground_truth() const = 0;
 
   /// Ground truth of tracks of any point, for simulators of events: front-ends' tracks are scored with it. nullptr if
   /// it is unknown.

@@ -1,9 +1,8 @@
 #include "cost_functions.hpp"
 
 #include <cmath>
+#include <evbench/plugin.hpp>
 #include <utility>
-
-#include "core/geometry/so3.hpp"
 
 namespace spline_map {
 namespace {

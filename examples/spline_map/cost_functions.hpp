@@ -4,10 +4,9 @@
 #include <ceres/manifold.h>
 #include <ceres/sized_cost_function.h>
 
+#include <evbench/plugin.hpp>
 #include <vector>
 
-#include "core/data/track.hpp"
-#include "core/geometry/camera.hpp"
 #include "spline.hpp"
 
 namespace spline_map {

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "core/structure/depth_reversal.hpp"
-#include "core/support/median.hpp"
+#include <evbench/plugin.hpp>
 
 namespace spline_map {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <evbench/plugin.hpp>
 #include <optional>
 #include <string>
 
-#include "core/structure/track_buffer.hpp"
 #include "options.hpp"
 
 namespace spline_map {

@@ -1,12 +1,10 @@
 #pragma once
 
+#include <evbench/plugin.hpp>
 #include <map>
 #include <span>
 #include <vector>
 
-#include "core/data/track.hpp"
-#include "core/geometry/camera.hpp"
-#include "core/structure/triangulation.hpp"
 #include "spline.hpp"
 
 namespace spline_map {

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "core/geometry/so3.hpp"
+#include <evbench/plugin.hpp>
 
 namespace spline_map {
 

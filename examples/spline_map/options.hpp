@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/structure/initialiser.hpp"
-#include "core/structure/triangulation.hpp"
+#include <evbench/plugin.hpp>
+
 #include "solver.hpp"
 
 namespace spline_map {

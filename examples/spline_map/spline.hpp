@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <evbench/plugin.hpp>
 #include <vector>
 
-#include "core/motion/gp_interval.hpp"
 #include "spline_segment.hpp"
 
 namespace spline_map {

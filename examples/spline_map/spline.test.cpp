@@ -1,6 +1,7 @@
 #include "spline.hpp"
 
-#include "core/testing/catch2.hpp"
+#include <evbench/plugin_test.hpp>
+
 #include "testing.hpp"
 
 using namespace spline_map;

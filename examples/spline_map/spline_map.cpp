@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <evbench/plugin.hpp>
 
-#include "core/geometry/so3.hpp"
-#include "core/plugin/registration.hpp"
-#include "core/support/seconds_since.hpp"
 #include "cost_functions.hpp"
 
 namespace spline_map {
@@ -99,8 +97,8 @@ void SplineMap::initialise(double t) {
     tracks_.forget(track);
   }
   context_.event({t, "initialised",
-                  fmt::format("initial map: {} landmarks, median parallax {:.1f} deg, from {:.3f} s",
-                              landmarks_.size(), first->parallax_deg, spline_.start())});
+                  fmt::format("initial map: {} landmarks, median parallax {:.1f} deg, from {:.3f} s", landmarks_.size(),
+                              first->parallax_deg, spline_.start())});
   spline_.extend_to(t);
   remove_outliers(spline_.start());
   add_landmarks(t);

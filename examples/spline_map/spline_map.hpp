@@ -1,14 +1,12 @@
 #pragma once
 
 #include <deque>
+#include <evbench/plugin.hpp>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "core/plugin/backend.hpp"
-#include "core/plugin/tracking_monitor.hpp"
-#include "core/structure/track_buffer.hpp"
 #include "initial_map.hpp"
 #include "options.hpp"
 

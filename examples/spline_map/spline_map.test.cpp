@@ -1,9 +1,9 @@
 #include "spline_map.hpp"
 
 #include <cmath>
+#include <evbench/plugin.hpp>
+#include <evbench/plugin_test.hpp>
 
-#include "core/plugin/registration.hpp"
-#include "core/testing/catch2.hpp"
 #include "testing.hpp"
 
 using namespace spline_map;

@@ -1,6 +1,6 @@
 #include "spline_segment.hpp"
 
-#include "core/geometry/so3.hpp"
+#include <evbench/plugin.hpp>
 
 namespace spline_map {
 namespace so3 = evbench::so3;

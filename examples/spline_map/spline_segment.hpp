@@ -1,8 +1,7 @@
 #pragma once
 
 #include <array>
-
-#include "core/geometry/se3.hpp"
+#include <evbench/plugin.hpp>
 
 namespace spline_map {
 

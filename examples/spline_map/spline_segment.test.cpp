@@ -1,9 +1,9 @@
 #include "spline_segment.hpp"
 
+#include <evbench/plugin.hpp>
+#include <evbench/plugin_test.hpp>
 #include <random>
 
-#include "core/geometry/so3.hpp"
-#include "core/testing/catch2.hpp"
 #include "testing.hpp"
 
 using namespace spline_map;

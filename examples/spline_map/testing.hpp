@@ -1,9 +1,9 @@
 #pragma once
 
 #include <array>
+#include <evbench/plugin.hpp>
 #include <random>
 
-#include "core/geometry/so3.hpp"
 #include "spline_segment.hpp"
 
 namespace spline_map::testing {

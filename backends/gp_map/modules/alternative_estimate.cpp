@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <iterator>
 
-#include "backends/gp_map/engine/engine.hpp"
-#include "backends/gp_map/factors.hpp"
 #include "backends/gp_map/observation_follower.hpp"
+#include "core/smoother/factors.hpp"
+#include "core/smoother/smoother.hpp"
 #include "core/support/median.hpp"
 
 namespace evbench::gp_map {
@@ -20,10 +20,10 @@ constexpr int kFewestStates = 8, kMostStates = 256;  ///< its states
 constexpr int kEnoughObservations = 8000;  ///< beyond about so many, each track's observations are thinned evenly
 constexpr double kKnown = 0.03;            ///< sigma of older landmarks, as a share of their distance
 constexpr double kFirstPoseHeld = 1e-4;    ///< [rad, units] sigma of the pose from which it begins
-constexpr double kInitialSigma = 0.05;   ///< sigma of new landmarks' initial positions, as a share of the median depth
-constexpr double kMostOblique = 4.0;     ///< largest factor from the median depth, where the plane is edge-on
-constexpr double kAdvantage = 10.0;      ///< by which the cost of the alternative must be lower
-constexpr int kRecentIterations = 6;     ///< of each estimate, at most
+constexpr double kInitialSigma = 0.05;  ///< sigma of new landmarks' initial positions, as a share of the median depth
+constexpr double kMostOblique = 4.0;    ///< largest factor from the median depth, where the plane is edge-on
+constexpr double kAdvantage = 10.0;     ///< by which the cost of the alternative must be lower
+constexpr int kRecentIterations = 6;    ///< of each estimate, at most
 constexpr double kRecentTolerance = 3e-3;  ///< relative change of the cost at which they end: 10 of some thousands
 constexpr int kShare = 34000;    ///< work of one share: linearising an observation is one, eliminating a state ...
 constexpr int kStateWork = 100;  ///< this much
@@ -122,15 +122,15 @@ int work_of(const FactorGraph& problem) {
 
 }  // namespace
 
-std::optional<AlternativeSearch> AlternativeSearch::begin(const FactorGraph& graph, const StateRange& states, int enough,
-                                                        StructureHypothesis hypothesis, bool tentative) {
+std::optional<AlternativeSearch> AlternativeSearch::begin(const FactorGraph& graph, const StateRange& states,
+                                                          int enough, StructureHypothesis hypothesis, bool tentative) {
   auto part = newest_part(graph, states, index(enough), tentative);
   if (!part) return std::nullopt;
   FactorGraph problem = problem_of(graph, *part);
   const auto plane = assume_plane(hypothesis, problem, part->fresh.size());
   if (!plane) return std::nullopt;
   return AlternativeSearch(part->first, static_cast<int>(graph.landmarks.size()), std::move(part->fresh),
-                          std::move(problem), *plane);
+                           std::move(problem), *plane);
 }
 
 Vector3 AlternativeSearch::Plane::place(const Vector3& p, const Vector3& ray) const {
@@ -140,8 +140,7 @@ Vector3 AlternativeSearch::Plane::place(const Vector3& p, const Vector3& ray) co
 }
 
 std::optional<AlternativeSearch::Plane> AlternativeSearch::assume_plane(StructureHypothesis hypothesis,
-                                                                        const FactorGraph& problem,
-                                                                        std::size_t fresh) {
+                                                                        const FactorGraph& problem, std::size_t fresh) {
   struct Sight {
     Vector3 p, ray;  // of depth 1
   };
@@ -201,14 +200,14 @@ bool AlternativeSearch::pass() {
     if (!(cost_ + kAdvantage < evaluate(problem_).total())) return false;
     const int held = std::min(1, first_);
     found_ = AlternativeEstimate{first_,
-                              {alternative_->graph().states.begin() + held, alternative_->graph().states.end()},
-                              {},
-                              -cost_,
-                              landmark_count_};
+                                 {alternative_->graph().states.begin() + held, alternative_->graph().states.end()},
+                                 {},
+                                 -cost_,
+                                 landmark_count_};
     for (std::size_t j = 0; j < fresh_.size(); ++j) {
       found_->landmarks.emplace_back(fresh_[j], alternative_->graph().landmarks[j].position);
     }
-    present_.emplace(std::move(problem_), EngineOptions{});
+    present_.emplace(std::move(problem_), SmootherOptions{});
     return true;
   }
   if (solve(*present_)) return true;
@@ -220,14 +219,13 @@ bool AlternativeSearch::pass() {
 /// Adds a state. New landmarks begin on the plane.
 void AlternativeSearch::add_state(int k) {
   forward_.set_next_qc(problem_.qcs[index(k)]);
-  add_extrapolated_state(forward_, problem_.states[index(k)].t);
+  forward_.add_state(problem_.states[index(k)].t);
   for (const auto& group : problem_.intervals[index(k)].groups()) {
     const auto observations = problem_.intervals[index(k)].of(group);
     int& j = in_engine_[index(group.landmark)];
     if (j < 0 && index(group.landmark) < fresh_.size()) {
       const SE3& T = forward_.graph().states.back().T;
-      const Vector3 place =
-          plane_.place(T.p, T.R() * problem_.camera.ray(observations.front().pixel));
+      const Vector3 place = plane_.place(T.p, T.R() * problem_.camera.ray(observations.front().pixel));
       j = forward_.add_landmark(place, {place, kInitialSigma * plane_.median_depth});
     } else if (j < 0) {
       const FactorGraph::Landmark& landmark = problem_.landmarks[index(group.landmark)];
@@ -241,19 +239,19 @@ void AlternativeSearch::add_state(int k) {
 /// Begins to solve the problem itself, with its expansions and without the priors that held new landmarks on the
 /// plane.
 void AlternativeSearch::begin_solving() {
-  forward_.settle();
+  forward_.update_everything();
   FactorGraph other = problem_;
   other.states = forward_.graph().states;
   for (std::size_t j = 0; j < in_engine_.size(); ++j) {
     if (in_engine_[j] >= 0) other.landmarks[j].position = forward_.graph().landmarks[index(in_engine_[j])].position;
   }
   to_anchored_scale(other);
-  alternative_.emplace(std::move(other), EngineOptions{});
+  alternative_.emplace(std::move(other), SmootherOptions{});
 }
 
 /// One iteration. False after the last one; the cost is then known.
-bool AlternativeSearch::solve(Engine& engine) {
-  const auto summary = engine.optimise(1, kRecentTolerance);
+bool AlternativeSearch::solve(Smoother& smoother) {
+  const auto summary = smoother.optimise(1, kRecentTolerance);
   cost_ = summary.final_cost;
   const bool unchanged = summary.final_cost == summary.initial_cost;
   const bool last = summary.converged || unchanged || ++iterations_ == kRecentIterations;
@@ -261,8 +259,8 @@ bool AlternativeSearch::solve(Engine& engine) {
   return !last;
 }
 
-void AlternativeEstimate::place_in(Engine& engine) const {
-  const FactorGraph& graph = engine.graph();
+void AlternativeEstimate::place_in(Smoother& smoother) const {
+  const FactorGraph& graph = smoother.graph();
   const int end = first + static_cast<int>(states.size());
   const auto before = [&](int k) { return graph.states[index(k)].T; };
   const SE3 along = states.back().T * before(end - 1).inverse();
@@ -272,15 +270,15 @@ void AlternativeEstimate::place_in(Engine& engine) const {
     if (j < landmark_count && landmark.intervals.front() < end) continue;  // newer ones may have been seen before
     const int k = landmark.intervals.back();
     const SE3 motion = k < end ? states[index(k - first)].T * before(k).inverse() : along;
-    engine.set_landmark(j, motion * landmark.position);
+    smoother.set_landmark(j, motion * landmark.position);
   }
   for (int k = end; k < std::ssize(graph.states); ++k) {
     ControlState state = graph.states[index(k)];
     state.T = along * state.T;
-    engine.set_state(k, state);
+    smoother.set_state(k, state);
   }
-  for (int k = first; k < end; ++k) engine.set_state(k, states[index(k - first)]);
-  for (const auto& [j, position] : landmarks) engine.set_landmark(j, position);
+  for (int k = first; k < end; ++k) smoother.set_state(k, states[index(k - first)]);
+  for (const auto& [j, position] : landmarks) smoother.set_landmark(j, position);
 }
 
 }  // namespace evbench::gp_map

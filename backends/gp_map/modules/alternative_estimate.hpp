@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/engine/engine.hpp"
+#include "backends/gp_map/smoother.hpp"
 
 namespace evbench::gp_map {
 
@@ -28,10 +28,10 @@ struct AlternativeEstimate {
   double advantage = 0.0;                          ///< by which its cost, ½ Σ ρ, is lower
   int landmark_count = 0;                          ///< number of landmarks of the searched problem
 
-  /// Makes it the engine's estimate. Later states are moved along, and so are landmarks that came into view after it or
-  /// were added to the engine since the search. Not for an engine in which the state before the first one has been
-  /// marginalised.
-  void place_in(Engine& engine) const;
+  /// Makes it the smoother's estimate. Later states are moved along, and so are landmarks that came into view after it
+  /// or were added to the smoother since the search. Not for an smoother in which the state before the first one has
+  /// been marginalised.
+  void place_in(Smoother& smoother) const;
 };
 
 /// Searches a better alternative estimate of the recent part of a problem.
@@ -55,7 +55,7 @@ class AlternativeSearch {
   /// reaches back to the oldest state, if fewer than `enough` landmarks are older, or if most landmarks of its newest
   /// interval are older.
   static std::optional<AlternativeSearch> begin(const FactorGraph& graph, const StateRange& states, int enough,
-                                               StructureHypothesis hypothesis, bool tentative = false);
+                                                StructureHypothesis hypothesis, bool tentative = false);
 
   /// Does a bounded share of the work. False when the search has ended.
   bool run_share();
@@ -79,19 +79,19 @@ class AlternativeSearch {
   bool pass();
   void add_state(int k);
   void begin_solving();
-  bool solve(Engine& engine);
+  bool solve(Smoother& smoother);
 
   int first_;
   int landmark_count_;
   std::vector<int> fresh_;  ///< the new landmarks, which are the first ones here, by index in the whole problem
   FactorGraph problem_;     ///< begins with the state before the part, if there is one, which is held
   Plane plane_;
-  int passes_;                         ///< in a share
-  Engine forward_;                     ///< passes through the problem, state by state, from the plane
-  int newest_added_ = 0;               ///< its newest state
-  std::vector<int> in_engine_;         ///< its landmarks, by those of the problem
-  std::optional<Engine> alternative_;  ///< solved from the result of this pass
-  std::optional<Engine> present_;      ///< solved from the present estimate
+  int passes_;                           ///< in a share
+  Smoother forward_;                     ///< passes through the problem, state by state, from the plane
+  int newest_added_ = 0;                 ///< its newest state
+  std::vector<int> in_engine_;           ///< its landmarks, by those of the problem
+  std::optional<Smoother> alternative_;  ///< solved from the result of this pass
+  std::optional<Smoother> present_;      ///< solved from the present estimate
   int iterations_ = 0;
   double cost_ = 0.0;
   std::optional<AlternativeEstimate> found_;

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/testing/ambiguous_sequence.hpp"
+#include "core/smoother/smoother.hpp"
 #include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
@@ -18,9 +18,9 @@ using namespace ambiguous_sequence;
 
 /// Runs a search to its end.
 std::optional<AlternativeEstimate> try_alternatives(const FactorGraph& graph, int first_state, int enough,
-                                                 StructureHypothesis hypothesis, bool tentative = false) {
+                                                    StructureHypothesis hypothesis, bool tentative = false) {
   auto search = AlternativeSearch::begin(graph, {first_state, static_cast<int>(graph.states.size()) - 1}, enough,
-                                        hypothesis, tentative);
+                                         hypothesis, tentative);
   if (!search) return std::nullopt;
   while (search->run_share()) {
   }
@@ -44,10 +44,10 @@ TEST_CASE("A local minimum that exchanges a plane's normal and the translation i
       if (!other) continue;
       CHECK((other->first == 0) == tentative);
       CHECK(other->first + std::ssize(other->states) == std::ssize(wrong.states));
-      Engine engine(wrong, {});
-      other->place_in(engine);
-      engine.optimise(20, 1e-9);
-      const double error = (engine.graph().states.back().T.p - real).norm();
+      Smoother smoother(wrong, {});
+      other->place_in(smoother);
+      smoother.optimise(20, 1e-9);
+      const double error = (smoother.graph().states.back().T.p - real).norm();
       const double before = (wrong.states.back().T.p - real).norm();
       CHECK(error < before);
       if (error < 0.3 * before) ++found;
@@ -61,19 +61,19 @@ TEST_CASE("States and landmarks that were added since the search are moved along
   const FactorGraph wrong = misled(simulate_problem({-0.4, 0.0}, 1));
   const auto other = try_alternatives(wrong, 0, kEnough, StructureHypothesis::frontal_plane);
   REQUIRE(other);
-  Engine engine(wrong, {});
-  add_extrapolated_state(engine, kStep * kStates);
+  Smoother smoother(wrong, {});
+  smoother.add_state(kStep * kStates);
   const Vector3 in_camera(0.1, 0.2, 2.0);
   // A landmark is added with all observations of its track: one is seen by the new state, one only by an earlier one.
   for (const int k : {kStates, kStates - 3}) {
-    const int landmark = engine.add_landmark(engine.graph().states[index(k)].T * in_camera);
-    engine.add_observation(landmark, {kStep * k, wrong.camera.project(in_camera), 1.0 / kSigma});
-    if (k == kStates) engine.add_observation(landmark, {kStep * (k - 4), wrong.camera.project(in_camera), 1e-6});
+    const int landmark = smoother.add_landmark(smoother.graph().states[index(k)].T * in_camera);
+    smoother.add_observation(landmark, {kStep * k, wrong.camera.project(in_camera), 1.0 / kSigma});
+    if (k == kStates) smoother.add_observation(landmark, {kStep * (k - 4), wrong.camera.project(in_camera), 1e-6});
   }
-  engine.settle();
-  const FactorGraph before = engine.graph();
-  other->place_in(engine);
-  const FactorGraph& after = engine.graph();
+  smoother.update_everything();
+  const FactorGraph before = smoother.graph();
+  other->place_in(smoother);
+  const FactorGraph& after = smoother.graph();
   CHECK((after.states[kStates - 1].T.p - other->states.back().T.p).norm() < 1e-9);
   CHECK((after.states[kStates - 1].T.p - before.states[kStates - 1].T.p).norm() > 0.01);
   const auto newest_state = [](const FactorGraph& graph) {
@@ -87,8 +87,8 @@ TEST_CASE("States and landmarks that were added since the search are moved along
     };
     CHECK((seen(after) - seen(before)).norm() < 1e-9);
   }
-  for (int i = 0; i < 20; ++i) engine.settle();
-  CHECK(cost(engine.graph()) < cost(before) - 10.0);
+  for (int i = 0; i < 20; ++i) smoother.update_everything();
+  CHECK(cost(smoother.graph()) < cost(before) - 10.0);
 }
 
 TEST_CASE("The true estimate has no better alternative, and without older landmarks only a tentative map is searched") {

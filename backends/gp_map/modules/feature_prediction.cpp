@@ -88,7 +88,7 @@ const std::optional<Matrix2>& FeaturePrediction::image_covariance(Estimate& esti
   if (!is_new) return result;
   if (!ended) {
     estimate.forget_covariance(landmark);
-    result = estimate.engine.predicted_covariance(landmark, J_state, J_landmark);
+    result = estimate.smoother.predicted_covariance(landmark, J_state, J_landmark);
   } else {
     const std::optional<Matrix12>& state = estimate.newest_covariance();
     const std::optional<Matrix3> own = estimate.kept_covariance(landmark);

@@ -24,7 +24,7 @@ std::optional<AlternativeEstimate> HypothesisSearch::advance(Estimate& estimate)
   }
   if (!search_ || search_->run_share()) return std::nullopt;
   auto other = std::exchange(search_, std::nullopt)->found();
-  const int oldest = estimate.engine.first_state();
+  const int oldest = estimate.smoother.first_state();
   if (other && oldest > 0 && other->first <= oldest + 1) other.reset();  // a lag has marginalised it since
   if (checks_left_ > 0) checks_left_ = other ? kPlanes : checks_left_ - 1;
   if (other) estimate.count(Count::alternatives_accepted);
@@ -34,7 +34,7 @@ std::optional<AlternativeEstimate> HypothesisSearch::advance(Estimate& estimate)
 std::optional<AlternativeSearch> HypothesisSearch::begin(const Estimate& estimate, StructureHypothesis hypothesis,
                                                          bool everything) const {
   const FactorGraph& graph = estimate.graph();
-  const StateRange states{estimate.engine.first_state(), static_cast<int>(graph.states.size()) - 1};
+  const StateRange states{estimate.smoother.first_state(), static_cast<int>(graph.states.size()) - 1};
   return AlternativeSearch::begin(graph, states, estimate.enough(), hypothesis, everything);
 }
 

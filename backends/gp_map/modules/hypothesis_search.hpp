@@ -38,9 +38,9 @@ class HypothesisSearch {
                                          bool everything) const;
 
   SearchOptions options_;
-  double next_;            ///< [s] of the next search
-  int searches_ = 0;       ///< number of those that were begun
-  int checks_left_;        ///< failed searches that are missing for a confirmation
+  double next_;       ///< [s] of the next search
+  int searches_ = 0;  ///< number of those that were begun
+  int checks_left_;   ///< failed searches that are missing for a confirmation
   std::optional<AlternativeSearch> search_;
 };
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "backends/gp_map/modules/initial_trajectory.hpp"
-#include "backends/gp_map/problem_graph.hpp"
+#include "core/smoother/problem_graph.hpp"
 #include "core/support/median.hpp"
 
 namespace evbench::gp_map {

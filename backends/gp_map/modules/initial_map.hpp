@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "backends/gp_map/factor_graph.hpp"
 #include "backends/gp_map/options.hpp"
+#include "backends/gp_map/smoother.hpp"
+#include "core/smoother/factor_graph.hpp"
 #include "core/structure/multi_view.hpp"
 #include "core/structure/track_buffer.hpp"
 
@@ -20,9 +21,9 @@ struct InitialMap {
 
 /// Finds the initial map: candidates from two views (core/structure/initialiser), each refined over some more views
 /// (core/structure/multi_view). The best one is taken if the remaining noise allows its structure, even if another one
-/// is nearly as good: later data decide (alternative_estimate.hpp). Attempts are rare, because the tracks must have moved
-/// farther, and use few points of a track. From the first view's landmarks the trajectory is extended back as far as
-/// there are tracks.
+/// is nearly as good: later data decide (alternative_estimate.hpp). Attempts are rare, because the tracks must have
+/// moved farther, and use few points of a track. From the first view's landmarks the trajectory is extended back as far
+/// as there are tracks.
 ///
 /// World frame: the camera at the first view. Unit of length: the median distance of its landmarks from there. Gauge
 /// and scale are anchored by a tight prior on the first pose, and by the mean nearness to it of that half of the

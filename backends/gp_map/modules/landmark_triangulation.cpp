@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "backends/gp_map/problem_graph.hpp"
+#include "core/smoother/problem_graph.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -42,7 +42,7 @@ void LandmarkTriangulation::add(Estimate& estimate, TrackTable& tracks) {
     if (!place) continue;
     const int landmark = estimate.add_landmark(place->first, place->second);
     for (const TrackObservation& z : observations) {
-      estimate.engine.add_observation(landmark, to_observation(z, sigma_scale_));
+      estimate.smoother.add_observation(landmark, to_observation(z, sigma_scale_));
     }
     estimate.count(Count::landmarks);
     if (std::isfinite(place->second.sigma)) {
@@ -63,7 +63,7 @@ void LandmarkTriangulation::drop_guesses(Estimate& estimate) {
       return true;
     const auto ray = [&](int k) { return (landmark.position - graph.states[index(k)].T.p).normalized().eval(); };
     if (ray(seen.front()).cross(ray(seen.back())).norm() < least) return false;
-    estimate.engine.drop_prior(j);
+    estimate.smoother.remove_prior(j);
     return true;
   });
 }
@@ -72,7 +72,7 @@ LandmarkTriangulation::Location LandmarkTriangulation::locate(const Estimate& es
                                                               std::span<const TrackObservation> observations) const {
   const FactorGraph& graph = estimate.graph();
   const auto marginalised = [&](const TrackObservation& z) {
-    return graph.interval_of(z.t) <= estimate.engine.first_state();
+    return graph.interval_of(z.t) <= estimate.smoother.first_state();
   };
   const auto usable =  // none is later than the newest state
       observations.subspan(index(std::ranges::partition_point(observations, marginalised) - observations.begin()));

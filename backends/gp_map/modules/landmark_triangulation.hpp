@@ -26,8 +26,7 @@ struct MapOptions {
 /// until the landmark shows parallax: those without parallax at first are farther away than most.
 class LandmarkTriangulation {
  public:
-  LandmarkTriangulation(const MapOptions& options, double sigma_scale)
-      : options_(options), sigma_scale_(sigma_scale) {}
+  LandmarkTriangulation(const MapOptions& options, double sigma_scale) : options_(options), sigma_scale_(sigma_scale) {}
 
   /// Makes landmarks of the waiting tracks that allow it.
   void add(Estimate& estimate, TrackTable& tracks);

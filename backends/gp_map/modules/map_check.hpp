@@ -14,8 +14,8 @@ struct RejectionOptions {
   void declare(OptionSet& set);
 };
 
-/// Confirms an initial map, or rejects it. An initial map can be wrong altogether. A map that most tracks have fitted is
-/// not: their later errors have other reasons.
+/// Confirms an initial map, or rejects it. An initial map can be wrong altogether. A map that most tracks have fitted
+/// is not: their later errors have other reasons.
 class MapCheck {
  public:
   /// `rejected`: how many initial maps were rejected before this one; `min_tracks`: that an initial map needs.

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/engine/engine.hpp"
+#include "core/smoother/smoother.hpp"
 #include "core/support/median.hpp"
 
 namespace evbench::gp_map {
@@ -26,11 +26,11 @@ Eigen::Matrix3Xd positions_by_half(const FactorGraph& graph, bool odd, int itera
     if (other) half.remove_landmark(j);
     other = !other;
   }
-  Engine engine(std::move(half), {});
-  engine.optimise(iterations, kTolerance);
+  Smoother smoother(std::move(half), {});
+  smoother.optimise(iterations, kTolerance);
   Eigen::Matrix3Xd positions(3, std::ssize(graph.states));
   Eigen::Index i = 0;
-  for (const ControlState& state : engine.graph().states) positions.col(i++) = state.T.p;
+  for (const ControlState& state : smoother.graph().states) positions.col(i++) = state.T.p;
   return positions;
 }
 

@@ -2,8 +2,9 @@
 
 #include <optional>
 
-#include "backends/gp_map/factor_graph.hpp"
+#include "backends/gp_map/smoother.hpp"
 #include "core/plugin/options.hpp"
+#include "core/smoother/factor_graph.hpp"
 
 namespace evbench::gp_map {
 

@@ -26,14 +26,14 @@ void LearningOptions::declare(OptionSet& set) {
 }
 
 void MotionPrior::follow(Estimate& estimate) {
-  if (learn_ == LearnPrior::always) newest_.follow(estimate.engine);
+  if (learn_ == LearnPrior::always) newest_.follow(estimate.smoother);
 }
 
 void MotionPrior::smooth(Estimate& estimate, const TimeSpan& span, std::span<const double> surplus) {
   if (learn_ == LearnPrior::never) return;
-  learn_prior(estimate.engine, span, surplus);
+  learn_prior(estimate.smoother, span, surplus);
   const int k = estimate.graph().first_state_after(span.until) - 1;
-  if (k > estimate.engine.first_state()) smoothed_ = estimate.graph().qcs[index(k)];
+  if (k > estimate.smoother.first_state()) smoothed_ = estimate.graph().qcs[index(k)];
 }
 
 }  // namespace evbench::gp_map

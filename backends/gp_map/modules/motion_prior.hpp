@@ -5,8 +5,9 @@
 
 #include "backends/gp_map/estimate.hpp"
 #include "backends/gp_map/modules/prior_learning.hpp"
-#include "backends/gp_map/time_span.hpp"
+#include "backends/gp_map/smoother.hpp"
 #include "core/plugin/options.hpp"
+#include "core/smoother/time_span.hpp"
 
 namespace evbench::gp_map {
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include "backends/gp_map/factors.hpp"
 #include "core/geometry/seen_point.hpp"
 #include "core/geometry/solve_symmetric.hpp"
+#include "core/smoother/factors.hpp"
 #include "core/support/median.hpp"
 
 namespace evbench::gp_map {

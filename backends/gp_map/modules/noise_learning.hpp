@@ -2,7 +2,8 @@
 
 #include <map>
 
-#include "backends/gp_map/factor_graph.hpp"
+#include "backends/gp_map/smoother.hpp"
+#include "core/smoother/factor_graph.hpp"
 
 namespace evbench::gp_map {
 

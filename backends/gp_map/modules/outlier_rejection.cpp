@@ -68,7 +68,7 @@ void remove(Estimate& estimate, TrackTable& tracks, int landmark) {
 }
 
 void truncate(Estimate& estimate, TrackTable& tracks, int landmark, double from) {
-  estimate.engine.remove_observations(landmark, from);
+  estimate.smoother.remove_observations(landmark, from);
   tracks.end_track_of(landmark, TrackTable::Role::drifted);
   estimate.count(Count::truncated);
 }
@@ -113,7 +113,7 @@ bool OutlierRejection::is_outlier(Estimate& estimate, int landmark) const {
   const Observation& last = graph.intervals[index(l.intervals.back())].of(landmark).back();
   const double inverse_sigma = l.sigma_scale * last.whitening.inverse_sigma();  // as given
   const double far = options_.threshold * estimate.noise.scale_of_means();
-  return inverse_sigma * estimate.engine.reprojection_mean(landmark) > far;
+  return inverse_sigma * estimate.smoother.reprojection_mean(landmark) > far;
 }
 
 void OutlierRejection::reject_smoothed(Estimate& estimate, TrackTable& tracks, const TimeSpan& span) const {

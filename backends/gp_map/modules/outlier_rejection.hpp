@@ -1,9 +1,10 @@
 #pragma once
 
 #include "backends/gp_map/estimate.hpp"
-#include "backends/gp_map/time_span.hpp"
+#include "backends/gp_map/smoother.hpp"
 #include "backends/gp_map/track_table.hpp"
 #include "core/plugin/options.hpp"
+#include "core/smoother/time_span.hpp"
 
 namespace evbench::gp_map {
 

@@ -21,10 +21,10 @@ constexpr double kForce = 1.0;           ///< an expansion that changes by more 
 constexpr double kDensityChange = 1.5;   ///< a density that changes by a larger factor is set
 
 /// Evidence of the intervals from `first` on; none if the system is singular.
-std::vector<PriorEvidence> evidence_from(Engine& engine, int first) {
+std::vector<PriorEvidence> evidence_from(Smoother& smoother, int first) {
   std::vector<PriorEvidence> result;
-  const FactorGraph& graph = engine.graph();
-  for (const Matrix24& joint : engine.chain_covariances(first)) {
+  const FactorGraph& graph = smoother.graph();
+  for (const Matrix24& joint : smoother.chain_covariances(first)) {
     const std::size_t k = index(first) + result.size();
     result.push_back(evidence_of(GpInterval(graph.states[k - 1], graph.states[k]), joint, graph.qcs[k]));
   }
@@ -96,13 +96,13 @@ Vector6 RecentPrior::at(double t) const {
   return window.qc(memory.qc(memory.common_qc(guess_, kBegin), kCommonWeight), kGuessWeight);
 }
 
-void PriorLearner::follow(Engine& engine) {
-  const FactorGraph& graph = engine.graph();
+void PriorLearner::follow(Smoother& smoother) {
+  const FactorGraph& graph = smoother.graph();
   const double now = graph.states.back().t;
   if (now < followed_until_ + kUpdateInterval) return;
   followed_until_ = now;
   if (!prior_) prior_.emplace(window_, memory_, graph.qc);
-  take_evidence(engine);
+  take_evidence(smoother);
   if (prior_->recent().empty()) return;
   const int newest = static_cast<int>(graph.states.size()) - 1;
   for (const auto& [k, evidence] : prior_->recent()) {
@@ -111,14 +111,14 @@ void PriorLearner::follow(Engine& engine) {
     const double expansion = evidence.expansion(qc);
     if (change.maxCoeff() > kDensityChange || change.minCoeff() < 1.0 / kDensityChange ||
         std::abs(expansion - graph.expansions[index(k)]) > kForce) {
-      engine.set_qc(k, qc, expansion);
+      smoother.set_qc(k, qc, expansion);
     }
   }
-  engine.set_next_qc(prior_->at(now));
+  smoother.set_next_qc(prior_->at(now));
 }
 
-void PriorLearner::take_evidence(Engine& engine) {
-  const FactorGraph& graph = engine.graph();
+void PriorLearner::take_evidence(Smoother& smoother) {
+  const FactorGraph& graph = smoother.graph();
   const int newest = static_cast<int>(graph.states.size()) - 1;
   int first = 1;  // all intervals of the initial map
   if (!prior_->recent().empty()) {
@@ -126,30 +126,30 @@ void PriorLearner::take_evidence(Engine& engine) {
     const double from = graph.states.back().t - kUpdated;
     while (first > 1 && newest - first + 1 < kMostUpdated && graph.states[index(first - 1)].t > from) --first;
   }
-  first = std::max(first, engine.first_state() + 1);
-  prior_->take(first, evidence_from(engine, first));
+  first = std::max(first, smoother.first_state() + 1);
+  prior_->take(first, evidence_from(smoother, first));
 }
 
-std::vector<double> surplus_expansions(Engine& engine) {
-  const FactorGraph& graph = engine.graph();
+std::vector<double> surplus_expansions(Smoother& smoother) {
+  const FactorGraph& graph = smoother.graph();
   std::vector<double> surplus(graph.states.size(), 0.0);
-  std::size_t k = index(engine.first_state()) + 1;
-  for (const PriorEvidence& one : evidence_from(engine, static_cast<int>(k))) {
+  std::size_t k = index(smoother.first_state()) + 1;
+  for (const PriorEvidence& one : evidence_from(smoother, static_cast<int>(k))) {
     surplus[k] = graph.expansions[k] - one.expansion(graph.qcs[k]);
     ++k;
   }
   return surplus;
 }
 
-void learn_prior(Engine& engine, const TimeSpan& span, std::span<const double> surplus) {
-  const int first = std::max(engine.first_state() + 1, engine.graph().first_state_after(span.from));
-  const std::vector<PriorEvidence> evidence = evidence_from(engine, first);
+void learn_prior(Smoother& smoother, const TimeSpan& span, std::span<const double> surplus) {
+  const int first = std::max(smoother.first_state() + 1, smoother.graph().first_state_after(span.from));
+  const std::vector<PriorEvidence> evidence = evidence_from(smoother, first);
   PriorEvidence all;
   for (const PriorEvidence& one : evidence) {
     all.square += one.square;
     all.freedom += one.freedom;
   }
-  const Vector6 mean = all.qc(all.common_qc(engine.graph().qc, kBegin), kCommonWeight);
+  const Vector6 mean = all.qc(all.common_qc(smoother.graph().qc, kBegin), kCommonWeight);
   // Sums over the intervals before and the intervals after, accumulated in both directions.
   std::vector<PriorEvidence> before = evidence, after = evidence;
   for (std::size_t k = 1; k < evidence.size(); ++k) before[k].add(before[k - 1], kHistoryWindow);
@@ -161,7 +161,7 @@ void learn_prior(Engine& engine, const TimeSpan& span, std::span<const double> s
     const Vector6 qc = sum.qc(mean, kGuessWeight);
     const std::size_t i = index(first) + k;
     const double expansion = evidence[k].expansion(qc) + (surplus.empty() ? 0.0 : surplus[i]);
-    engine.set_qc(static_cast<int>(i), qc, std::max(0.0, expansion));
+    smoother.set_qc(static_cast<int>(i), qc, std::max(0.0, expansion));
   }
 }
 

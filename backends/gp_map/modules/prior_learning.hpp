@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "backends/gp_map/engine/engine.hpp"
-#include "backends/gp_map/time_span.hpp"
+#include "backends/gp_map/smoother.hpp"
+#include "core/smoother/time_span.hpp"
 
 namespace evbench::gp_map {
 
@@ -60,16 +60,16 @@ class RecentPrior {
   std::map<int, PriorEvidence> recent_;  ///< by interval
 };
 
-/// Estimates the prior of an engine while running.
+/// Estimates the prior of an smoother while running.
 class PriorLearner {
  public:
   PriorLearner(double window, double memory) : window_(window), memory_(memory) {}
 
   /// Call after an update: sets the densities of the newest intervals and of future ones.
-  void follow(Engine& engine);
+  void follow(Smoother& smoother);
 
  private:
-  void take_evidence(Engine& engine);
+  void take_evidence(Smoother& smoother);
 
   double window_, memory_;
   std::optional<RecentPrior> prior_;
@@ -77,11 +77,11 @@ class PriorLearner {
 };
 
 /// By how much the expansions exceed the contraction by the prior, by interval; 0 for marginalised ones.
-std::vector<double> surplus_expansions(Engine& engine);
+std::vector<double> surplus_expansions(Smoother& smoother);
 
 /// Estimates the prior of the intervals in this span that are still estimated, from these and from later ones. The
 /// expansions balance it, plus this surplus by interval: a part that alone is balanced again would get another scale
 /// than the rest.
-void learn_prior(Engine& engine, const TimeSpan& span, std::span<const double> surplus = {});
+void learn_prior(Smoother& smoother, const TimeSpan& span, std::span<const double> surplus = {});
 
 }  // namespace evbench::gp_map

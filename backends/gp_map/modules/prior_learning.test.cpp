@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "backends/gp_map/testing/drawn_problem.hpp"
+#include "core/smoother/testing/drawn_problem.hpp"
 #include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
@@ -21,31 +21,33 @@ double mean_qc(const FactorGraph& graph) {
 
 TEST_CASE("The prior from which a motion was drawn is estimated, starting a hundred times too strong or too weak") {
   for (const double start : {0.01, 1.0, 100.0}) {
-    Engine engine = testing::DrawnProblem({.qc = kTrue, .pixel_sigma = 0.05}, 1).solve_incrementally();
-    for (int k = 1; k < testing::DrawnProblem::kStates; ++k) engine.set_qc(k, Vector6::Constant(start * kTrue));
+    Smoother smoother = smoother::testing::DrawnProblem({.qc = kTrue, .pixel_sigma = 0.05}, 1).solve_incrementally();
+    for (int k = 1; k < smoother::testing::DrawnProblem::kStates; ++k)
+      smoother.set_qc(k, Vector6::Constant(start * kTrue));
     for (int round = 0; round < 6; ++round) {
-      engine.optimise(10, 1e-6);
-      learn_prior(engine, {});
+      smoother.optimise(10, 1e-6);
+      learn_prior(smoother, {});
     }
     CAPTURE(start);
-    CHECK(mean_qc(engine.graph()) == Approx(kTrue).epsilon(0.4));
+    CHECK(mean_qc(smoother.graph()) == Approx(kTrue).epsilon(0.4));
   }
 }
 
 TEST_CASE("When a part is estimated again, its expansions keep their surplus over the prior's contraction") {
-  Engine engine = testing::DrawnProblem({.qc = kTrue, .pixel_sigma = 0.05}, 1).solve_incrementally();
-  for (int k = 1; k < testing::DrawnProblem::kStates; ++k) engine.set_qc(k, Vector6::Constant(10.0 * kTrue), 20.0 + k);
-  engine.update();
-  const std::vector<double> surplus = surplus_expansions(engine);
+  Smoother smoother = smoother::testing::DrawnProblem({.qc = kTrue, .pixel_sigma = 0.05}, 1).solve_incrementally();
+  for (int k = 1; k < smoother::testing::DrawnProblem::kStates; ++k)
+    smoother.set_qc(k, Vector6::Constant(10.0 * kTrue), 20.0 + k);
+  smoother.update();
+  const std::vector<double> surplus = surplus_expansions(smoother);
   REQUIRE(surplus[1] > 10.0);  // it is not balanced
   for (int round = 0; round < 3; ++round) {
-    learn_prior(engine, {}, surplus);
-    const std::vector<double> kept = surplus_expansions(engine);
+    learn_prior(smoother, {}, surplus);
+    const std::vector<double> kept = surplus_expansions(smoother);
     for (std::size_t k = 1; k < surplus.size(); ++k) CHECK(kept[k] == Approx(surplus[k]).margin(1e-9));
-    engine.update();
+    smoother.update();
   }
-  learn_prior(engine, {});
-  for (const double balance : surplus_expansions(engine)) CHECK(balance == Approx(0.0).margin(1e-9));
+  learn_prior(smoother, {});
+  for (const double balance : surplus_expansions(smoother)) CHECK(balance == Approx(0.0).margin(1e-9));
 }
 
 TEST_CASE("Evidence fades with time, and a guess counts where there is little evidence") {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/factors.hpp"
+#include "core/smoother/factors.hpp"
 #include "core/support/median.hpp"
 
 namespace evbench::gp_map {
@@ -43,24 +43,24 @@ void RelaxationOptions::declare(OptionSet& set) {
 
 void PriorRelaxation::relax(Estimate& estimate) const {
   if (!options_.enabled) return;
-  Engine& engine = estimate.engine;
+  Smoother& smoother = estimate.smoother;
   const FactorGraph& graph = estimate.graph();
   const double error = newest_error(estimate), relaxed = graph.qc.cwiseQuotient(qc_).maxCoeff();
   if (!(error > options_.error) || relaxed * options_.factor > options_.most) return;
   const int newest = static_cast<int>(graph.states.size()) - 1;
-  const int first = std::max(engine.first_state() + 1, newest - options_.intervals + 1);
+  const int first = std::max(smoother.first_state() + 1, newest - options_.intervals + 1);
   const std::vector<Vector6> densities(graph.qcs.begin() + first, graph.qcs.end());
   const std::vector<double> expansions(graph.expansions.begin() + first, graph.expansions.end());
   const auto weaken = [&](double factor) {
     for (std::size_t i = 0; i < densities.size(); ++i) {
-      engine.set_qc(first + static_cast<int>(i), factor * densities[i], expansions[i] / factor);
+      smoother.set_qc(first + static_cast<int>(i), factor * densities[i], expansions[i] / factor);
     }
     estimate.update();
   };
   estimate.count(Count::relaxations_tried);
   weaken(options_.factor);
   if (newest_error(estimate) < options_.gain * error) {
-    engine.set_next_qc(graph.qcs.back());
+    smoother.set_next_qc(graph.qcs.back());
     estimate.count(Count::priors_relaxed);
   } else {
     weaken(1.0);
@@ -75,7 +75,7 @@ bool PriorRelaxation::is_relaxed(const Estimate& estimate) const {
 void PriorRelaxation::recover(Estimate& estimate) const {
   const FactorGraph& graph = estimate.graph();
   const double dt = estimate.now() - graph.states[graph.states.size() - 2].t;
-  estimate.engine.set_next_qc((std::exp(-dt / window_) * graph.qc).cwiseMax(qc_));
+  estimate.smoother.set_next_qc((std::exp(-dt / window_) * graph.qc).cwiseMax(qc_));
 }
 
 }  // namespace evbench::gp_map

@@ -4,37 +4,37 @@
 #include <vector>
 
 #include "backends/gp_map/observation_follower.hpp"
-#include "backends/gp_map/testing/drawn_problem.hpp"
+#include "core/smoother/testing/drawn_problem.hpp"
 #include "core/support/index.hpp"
 #include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {
 
-using testing::DrawnProblem;
+using smoother::testing::DrawnProblem;
 
 constexpr double kUnrelaxed = 0.01;  // [rad²/s³, m²/s³]
-constexpr int kEnough = 6;         // landmarks
+constexpr int kEnough = 6;           // landmarks
 
 /// Relaxation of the prior after a state 5 ms after the last one. `seen` landmarks are observed with this offset from
 /// their expected pixels [px], the i-th one in a direction of i `turn` from the image's x axis.
 double relaxation_for(int seen, double offset, double turn) {
   Counters counters;
   Estimate estimate(DrawnProblem({.qc = kUnrelaxed}, 1).solve_incrementally().graph(), {}, kEnough, 0.0, counters);
-  Engine& engine = estimate.engine;
-  engine.settle();
-  PriorRelaxation relaxation({}, 0.3, engine.graph().qc);
-  const double t = engine.graph().states.back().t + 0.005;
+  Smoother& smoother = estimate.smoother;
+  smoother.update_everything();
+  PriorRelaxation relaxation({}, 0.3, smoother.graph().qc);
+  const double t = smoother.graph().states.back().t + 0.005;
   std::vector<int> in_view;
-  for (const auto& group : engine.graph().intervals.back().groups()) in_view.push_back(group.landmark);
+  for (const auto& group : smoother.graph().intervals.back().groups()) in_view.push_back(group.landmark);
   REQUIRE(std::ssize(in_view) >= seen);
-  add_extrapolated_state(engine, t);
-  const FactorGraph& graph = engine.graph();
+  smoother.add_state(t);
+  const FactorGraph& graph = smoother.graph();
   for (int i = 0; i < seen; ++i) {
     const Vector3& position = graph.landmarks[index(in_view[index(i)])].position;
     const Vector2 expected = graph.camera.project(graph.states.back().T.inverse() * position);
     const Vector2 pixel = expected + offset * Vector2(std::cos(i * turn), std::sin(i * turn));
-    engine.add_observation(in_view[index(i)], {t, pixel, 10.0});
+    smoother.add_observation(in_view[index(i)], {t, pixel, 10.0});
   }
   estimate.update();
   relaxation.relax(estimate);

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backends/gp_map/factors.hpp"
+#include "core/smoother/factors.hpp"
 
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kGone = 0.05;        ///< [s] shortest gap before a re-acquisition
-constexpr std::ptrdiff_t kMany = 5;   ///< re-acquired tracks
+constexpr double kGone = 0.05;       ///< [s] shortest gap before a re-acquisition
+constexpr std::ptrdiff_t kMany = 5;  ///< re-acquired tracks
 
 /// Distance of the landmark's image at the present estimate from its first observation [sigmas of a track's means];
 /// infinite behind the camera.
@@ -50,7 +50,7 @@ void Reassociation::observe(Estimate& estimate, TrackTable& tracks, const TrackO
 }
 
 bool Reassociation::continues(const Estimate& estimate, const TrackTable::Track& track) {
-  if (estimate.engine.is_marginalised(track.landmark)) return false;
+  if (estimate.smoother.is_marginalised(track.landmark)) return false;
   const auto& seen = estimate.graph().landmarks[index(track.landmark)].intervals;
   const int newest = static_cast<int>(estimate.graph().states.size()) - 1;
   return !track.ended || seen.empty() || seen.back() >= newest || returns_.spend(seen.back(), newest + 1);
@@ -83,7 +83,7 @@ void Reassociation::check(Estimate& estimate, TrackTable& tracks) const {
     const auto& [id, seen] = entry;
     if (estimate.now() - seen.t < options_.time) return false;
     if (checked && is_far(entry)) {
-      estimate.engine.remove_observations(seen.landmark, seen.t);
+      estimate.smoother.remove_observations(seen.landmark, seen.t);
       tracks.mismatch(id);
       estimate.count(Count::reassociations_rejected);
     }

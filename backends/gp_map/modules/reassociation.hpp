@@ -28,8 +28,8 @@ class Reassociation {
   /// is expected; the old one stays as it is.
   void observe(Estimate& estimate, TrackTable& tracks, const TrackObservation& z);
 
-  /// Rejects tracks that stay far from their landmarks' expected places. None if they are most of many, because then the
-  /// motion is wrong.
+  /// Rejects tracks that stay far from their landmarks' expected places. None if they are most of many, because then
+  /// the motion is wrong.
   void check(Estimate& estimate, TrackTable& tracks) const;
 
  private:

@@ -4,22 +4,22 @@
 #include <optional>
 #include <utility>
 
-#include "backends/gp_map/testing/drawn_problem.hpp"
+#include "core/smoother/testing/drawn_problem.hpp"
 #include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {
 
-using testing::DrawnProblem;
+using smoother::testing::DrawnProblem;
 
 constexpr double kDensity = 0.01;  // [rad²/s³, m²/s³]
 
-Engine solved_with(double qc, const DrawnProblem& problem) {
-  Engine engine = problem.solve_incrementally();
-  for (int k = 1; k < DrawnProblem::kStates; ++k) engine.set_qc(k, Vector6::Constant(qc));
-  engine.set_next_qc(Vector6::Constant(qc));
-  engine.optimise(10, 1e-9);
-  return engine;
+Smoother solved_with(double qc, const DrawnProblem& problem) {
+  Smoother smoother = problem.solve_incrementally();
+  for (int k = 1; k < DrawnProblem::kStates; ++k) smoother.set_qc(k, Vector6::Constant(qc));
+  smoother.set_next_qc(Vector6::Constant(qc));
+  smoother.optimise(10, 1e-9);
+  return smoother;
 }
 
 }  // namespace
@@ -30,11 +30,11 @@ TEST_CASE("The newest motion is smoothed by the prior that it shows, whichever p
     double estimated = 0.0, smoothed = 0.0;  // squared errors of the newest velocity
     for (int seed = 1; seed <= 20; ++seed) {
       const DrawnProblem problem({.qc = kDensity, .pixel_sigma = 0.3}, static_cast<std::uint64_t>(seed));
-      const Engine engine = solved_with(wrong * kDensity, problem);
-      RecentMotion motion(RecentPrior(0.3, 3.0, engine.graph().qc));
-      for (int i = 0; i < 20; ++i) motion.follow(engine.graph(), 0);
+      const Smoother smoother = solved_with(wrong * kDensity, problem);
+      RecentMotion motion(RecentPrior(0.3, 3.0, smoother.graph().qc));
+      for (int i = 0; i < 20; ++i) motion.follow(smoother.graph(), 0);
       const Vector6& truth = problem.truth((DrawnProblem::kStates - 1) * DrawnProblem::kSteps).velocity;
-      estimated += (engine.graph().states.back().velocity - truth).squaredNorm();
+      estimated += (smoother.graph().states.back().velocity - truth).squaredNorm();
       smoothed += (motion.states().back().velocity - truth).squaredNorm();
     }
     CAPTURE(wrong, estimated, smoothed);
@@ -42,12 +42,13 @@ TEST_CASE("The newest motion is smoothed by the prior that it shows, whichever p
   }
 }
 
-TEST_CASE("The states of the last 0.4 s are at the engine's times, and equal its states if nothing is smoothed") {
-  const Engine engine = solved_with(kDensity, DrawnProblem({.qc = kDensity, .pixel_sigma = 0.3}, 1));
-  const auto& states = engine.graph().states;
+TEST_CASE("The states of the last 0.4 s are at the smoother's times, and equal its states if nothing is smoothed") {
+  const Smoother smoother = solved_with(kDensity, DrawnProblem({.qc = kDensity, .pixel_sigma = 0.3}, 1));
+  const auto& states = smoother.graph().states;
   for (const bool smooth : {false, true}) {
-    RecentMotion motion(smooth ? std::optional<RecentPrior>(std::in_place, 0.3, 3.0, engine.graph().qc) : std::nullopt);
-    motion.follow(engine.graph(), 0);
+    RecentMotion motion(smooth ? std::optional<RecentPrior>(std::in_place, 0.3, 3.0, smoother.graph().qc)
+                               : std::nullopt);
+    motion.follow(smoother.graph(), 0);
     REQUIRE(motion.states().size() == 8);  // 0.05 s apart
     for (std::size_t i = 0; i < 8; ++i) {
       const ControlState &recent = motion.states()[i], &estimate = states[states.size() - 8 + i];
@@ -55,7 +56,7 @@ TEST_CASE("The states of the last 0.4 s are at the engine's times, and equal its
       CHECK((recent.T.p == estimate.T.p) == !smooth);
       CHECK((recent.T.p - estimate.T.p).norm() < 0.01);
     }
-    motion.follow(engine.graph(), static_cast<int>(states.size()) - 3);
+    motion.follow(smoother.graph(), static_cast<int>(states.size()) - 3);
     CHECK(motion.states().size() == 3);  // the observations before these are gone
   }
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backends/gp_map/factors.hpp"
+#include "core/smoother/factors.hpp"
 #include "core/support/median.hpp"
 
 namespace evbench::gp_map {

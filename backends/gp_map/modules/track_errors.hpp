@@ -4,9 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/factor_graph.hpp"
 #include "backends/gp_map/modules/noise_learning.hpp"
-#include "backends/gp_map/time_span.hpp"
+#include "backends/gp_map/smoother.hpp"
+#include "core/smoother/factor_graph.hpp"
+#include "core/smoother/time_span.hpp"
 
 namespace evbench::gp_map {
 

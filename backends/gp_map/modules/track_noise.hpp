@@ -1,8 +1,9 @@
 #pragma once
 
 #include "backends/gp_map/estimate.hpp"
-#include "backends/gp_map/time_span.hpp"
+#include "backends/gp_map/smoother.hpp"
 #include "core/plugin/options.hpp"
+#include "core/smoother/time_span.hpp"
 
 namespace evbench::gp_map {
 
@@ -13,8 +14,8 @@ struct TrackNoiseOptions {
   void declare(OptionSet& set);
 };
 
-/// Gives each track its own noise, within the bounds of its leverage: tracks differ by degrees, not only as outliers and
-/// inliers.
+/// Gives each track its own noise, within the bounds of its leverage: tracks differ by degrees, not only as outliers
+/// and inliers.
 class TrackNoise {
  public:
   /// `memory`: while running, the noise of tracks up to this age is estimated [s].

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/engine/engine.hpp"
-#include "backends/gp_map/factors.hpp"
 #include "core/simulation/random.hpp"
+#include "core/smoother/factors.hpp"
+#include "core/smoother/smoother.hpp"
 
 namespace evbench::gp_map::ambiguous_sequence {
 
@@ -66,17 +66,17 @@ FactorGraph misled(FactorGraph graph) {
     landmark.position = p + across.dot(Vector3(0.4, 0.0, 2.24) - p) / across.dot(ray) * ray;
     landmark.prior = {landmark.position, 0.02};
   }
-  Engine engine(std::move(graph), {});
-  engine.optimise(20, 1e-6);
-  for (int j = kOld; j < std::ssize(engine.graph().landmarks); ++j) engine.drop_prior(j);
-  engine.optimise(50, 1e-9);
-  return engine.graph();
+  Smoother smoother(std::move(graph), {});
+  smoother.optimise(20, 1e-6);
+  for (int j = kOld; j < std::ssize(smoother.graph().landmarks); ++j) smoother.remove_prior(j);
+  smoother.optimise(50, 1e-9);
+  return smoother.graph();
 }
 
 FactorGraph solved(FactorGraph graph) {
-  Engine engine(std::move(graph), {});
-  engine.optimise(20, 1e-9);
-  return engine.graph();
+  Smoother smoother(std::move(graph), {});
+  smoother.optimise(20, 1e-9);
+  return smoother.graph();
 }
 
 double cost(const FactorGraph& graph) { return evaluate(graph).total(); }

@@ -2,7 +2,8 @@
 
 #include <cstdint>
 
-#include "backends/gp_map/factor_graph.hpp"
+#include "backends/gp_map/smoother.hpp"
+#include "core/smoother/factor_graph.hpp"
 
 /// Simulated sequences in front of a plane that have an alternative estimate.
 namespace evbench::gp_map::ambiguous_sequence {

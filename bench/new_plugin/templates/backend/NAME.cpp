@@ -3,14 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <evbench/plugin.hpp>
 #include <map>
-
-#include "core/geometry/so3.hpp"
-#include "core/plugin/registration.hpp"
-#include "core/plugin/tracking_monitor.hpp"
-#include "core/structure/depth_reversal.hpp"
-#include "core/structure/initialiser.hpp"
-#include "core/structure/triangulation.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // The back-end NAME for evbench, in the fewest lines that run: the camera moves opposite to the mean observed pixel.
-#include "core/plugin/registration.hpp"
+#include <evbench/plugin.hpp>
 
 namespace {
 

@@ -1,12 +1,8 @@
 // The front-end NAME for evbench: a small one to start from. It takes the true tracks of a simulated source, keeps
 // every n-th observation of each, and adds noise. A tracker would read context.source.events() instead.
 #include <cmath>
+#include <evbench/plugin.hpp>
 #include <map>
-
-#include "core/plugin/registration.hpp"
-#include "core/plugin/track_player.hpp"
-#include "core/simulation/random.hpp"
-#include "core/support/error.hpp"
 
 namespace {
 

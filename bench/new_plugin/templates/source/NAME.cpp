@@ -2,9 +2,7 @@
 // ground truth and true tracks. A source that reads a recording would also implement all_events() and files().
 #include <algorithm>
 #include <cmath>
-
-#include "core/plugin/registration.hpp"
-#include "core/simulation/random.hpp"
+#include <evbench/plugin.hpp>
 
 namespace {
 

@@ -1,6 +1,5 @@
-#include "bench/battery/battery.hpp"
-#include "core/plugin/registration.hpp"
-#include "core/testing/catch2.hpp"
+#include <evbench/plugin.hpp>
+#include <evbench/plugin_test.hpp>
 
 using namespace evbench;
 

@@ -1,0 +1,278 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "core/motion/wnoa.hpp"
+#include "core/smoother/engine/observation_sums.hpp"
+#include "core/smoother/factors.hpp"
+#include "core/support/index.hpp"
+
+// Lanes run over landmarks: kLanes of them, with similar numbers of observations in the interval, are processed
+// together, the i-th observation of each at once (weight 0 if one has fewer). Terms that a landmark's observations
+// share stay in lanes of registers until they are complete, and only the result is transposed.
+//
+// With m = T_0⁻¹ l and ξ = a ϖ_0 + b ξ_1 + c w_1 a residual is a function of (m, ξ) alone, e = whitened π(Exp(−ξ) m) −
+// z. With G = ∂e/∂ξ the block of each pair of (ϖ_0, ξ_1, w_1) is a multiple of GᵀG, and the first pose acts through m
+// alone: δm = R_0ᵀ δl + [m^, −I] δT_0. Only once an interval these local coordinates (δT_0, δϖ_0, δξ_1, δw_1) are
+// mapped to the increments of both states.
+namespace evbench::smoother {
+namespace {
+
+using namespace lanes;  // NOLINT: this file and that header are one algorithm
+
+using Matrix12x24 = Eigen::Matrix<double, 12, 24>;
+
+/// rows × [m^, −I]: turns a derivative with respect to m into one with respect to δT_0.
+template <std::size_t N>
+std::array<std::array<Lane, 6>, N> through_first_pose(const std::array<std::array<Lane, 3>, N>& rows, const Lane3& m) {
+  std::array<std::array<Lane, 6>, N> result;
+  for (std::size_t r = 0; r < N; ++r) {
+    const Lane3 turned = cross({rows[r][0], rows[r][1], rows[r][2]}, m);  // vᵀ m^ = (v × m)ᵀ
+    result[r] = {turned.x, turned.y, turned.z, -rows[r][0], -rows[r][1], -rows[r][2]};
+  }
+  return result;
+}
+
+/// ∂(ξ_1, w_1)/∂(increments of both states), by its blocks that are not zero.
+struct EndMap {
+  Matrix6 xi1_T0, xi1_T1, w1_T0, w1_T1, w1_v1;
+};
+
+/// The coupling of each lane's landmark in world coordinates and to the increments of both states.
+void write_couplings(const LandmarkSums& landmark, const std::array<std::array<Lane, 6>, 3>& mT, const Matrix3& R0,
+                     const EndMap& map, const std::array<IntervalLinearisation::Coupling*, kLanes>& couplings) {
+  const auto rotate = [&](const std::array<Lane, 3>& v, std::size_t r) {
+    const auto i = static_cast<Eigen::Index>(r);
+    return R0(i, 0) * v[0] + R0(i, 1) * v[1] + R0(i, 2) * v[2];
+  };
+  const auto scatter = [&](Lane value, auto member) {
+    for (int i = 0; i < kLanes; ++i) {
+      if (couplings[index(i)] != nullptr) member(*couplings[index(i)]) = value[i];
+    }
+  };
+  const auto& h = landmark.mm;
+  const std::array<std::array<Lane, 3>, 3> mm = {{{h[0][0], h[1][0], h[2][0]},  //
+                                                  {h[1][0], h[1][1], h[2][1]},
+                                                  {h[2][0], h[2][1], h[2][2]}}};
+  std::array<std::array<Lane, 3>, 3> Rmm;  // R mm
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 3; ++c) Rmm[r][c] = rotate(mm[c], r);
+  }
+  for (std::size_t r = 0; r < 3; ++r) {
+    const auto row = static_cast<Eigen::Index>(r);
+    scatter(rotate(landmark.gradient, r), [&](auto& c) -> double& { return c.gradient(row); });
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto column = static_cast<Eigen::Index>(c);
+      scatter(rotate(Rmm[r], c), [&](auto& to) -> double& { return to.landmark_landmark(row, column); });
+    }
+    std::array<Lane, 12> end;
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      scatter(rotate({landmark.my[0][i], landmark.my[1][i], landmark.my[2][i]}, r),
+              [&](auto& c) -> double& { return c.landmark_states(row, 6 + column); });
+    }
+    for (std::size_t i = 0; i < 12; ++i) {
+      end[i] = rotate({landmark.my[0][6 + i], landmark.my[1][6 + i], landmark.my[2][6 + i]}, r);
+    }
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      Lane T0 = rotate({mT[0][i], mT[1][i], mT[2][i]}, r);
+      Lane T1{}, v1{};
+      for (std::size_t k = 0; k < 6; ++k) {
+        const auto at = static_cast<Eigen::Index>(k);
+        T0 += end[k] * map.xi1_T0(at, column) + end[6 + k] * map.w1_T0(at, column);
+        T1 += end[k] * map.xi1_T1(at, column) + end[6 + k] * map.w1_T1(at, column);
+        v1 += end[6 + k] * map.w1_v1(at, column);
+      }
+      scatter(T0, [&](auto& c) -> double& { return c.landmark_states(row, column); });
+      scatter(T1, [&](auto& c) -> double& { return c.landmark_states(row, 12 + column); });
+      scatter(v1, [&](auto& c) -> double& { return c.landmark_states(row, 18 + column); });
+    }
+  }
+}
+
+/// Adds the first pose's part to the interval's sums, computed from the landmark's.
+void add_first_pose(const LandmarkSums& landmark, const std::array<std::array<Lane, 6>, 3>& mT, const Lane3& m,
+                    IntervalSums& sums) {
+  std::array<std::array<Lane, 3>, 6> Tm;
+  for (std::size_t i = 0; i < 6; ++i) Tm[i] = {mT[0][i], mT[1][i], mT[2][i]};
+  const auto TT = through_first_pose(Tm, m);
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t j = 0; j <= i; ++j, ++n) sums.TT[n] += TT[i][j];
+  }
+  std::array<std::array<Lane, 3>, 18> ym;
+  for (std::size_t i = 0; i < 18; ++i) ym[i] = {landmark.my[0][i], landmark.my[1][i], landmark.my[2][i]};
+  const auto yT = through_first_pose(ym, m);
+  for (std::size_t i = 0; i < 18; ++i) {
+    for (std::size_t j = 0; j < 6; ++j) sums.yT[i][j] += yT[i][j];
+  }
+  const auto g = through_first_pose(std::array<std::array<Lane, 3>, 1>{landmark.gradient}, m);
+  for (std::size_t j = 0; j < 6; ++j) sums.gradient_T[j] += g[0][j];
+}
+
+template <Range range>
+void add_landmarks(const Shared& shared, const IntervalInput& in, const Matrix3& R0, const EndMap& map,
+                   std::span<const int> order, IntervalSums& sums, IntervalLinearisation& result) {
+  const auto& groups = in.observations.groups();
+  const Observation* all = in.observations.all().data();
+  for (std::size_t first = 0; first < order.size(); first += kLanes) {
+    std::array<IntervalLinearisation::Coupling*, kLanes> couplings{};
+    std::array<const Observation*, kLanes> next{};
+    std::array<int, kLanes> count{};
+    Lane3 m;
+    m.z += 1.0;
+    for (std::size_t i = 0; i < kLanes && first + i < order.size(); ++i) {
+      const std::size_t g = index(order[first + i]);
+      const auto& group = groups[g];
+      couplings[i] = &result.couplings[g];
+      couplings[i]->landmark = group.landmark;
+      next[i] = all + group.begin;
+      count[i] = group.end - group.begin;
+      const Vector3 local = R0.transpose() * (in.positions[g] - in.state0.T.p);
+      m.x[i] = local.x();
+      m.y[i] = local.y();
+      m.z[i] = local.z();
+    }
+    LandmarkSums landmark;
+    for (int n = 0; n < count[0]; ++n) {  // lane 0 has the most
+      Measured z(shared.interval.t0);
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        if (n < count[i]) z.set(i, *next[i]++);
+      }
+      add_observation<range>(shared, m, z, landmark, sums);
+    }
+    const auto& h = landmark.mm;
+    const auto mT = through_first_pose(
+        std::array<std::array<Lane, 3>, 3>{
+            {{h[0][0], h[1][0], h[2][0]}, {h[1][0], h[1][1], h[2][1]}, {h[2][0], h[2][1], h[2][2]}}},
+        m);
+    add_first_pose(landmark, mT, m, sums);
+    write_couplings(landmark, mT, R0, map, couplings);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      if (couplings[i] == nullptr) continue;
+      couplings[i]->error = {landmark.error[i], count[i], static_cast<int>(landmark.behind[i])};
+    }
+  }
+}
+
+/// Normal equations in the local coordinates (δT_0, δϖ_0, δξ_1, δw_1).
+struct LocalSystem {
+  Matrix24 H;
+  Vector24 g;
+
+  explicit LocalSystem(const IntervalSums& sums) {
+    std::size_t n = 0;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      g(i) = sum(sums.gradient_T[index(i)]);
+      for (Eigen::Index j = 0; j <= i; ++j, ++n) {
+        H(i, j) = H(j, i) = sum(sums.TT[n]);
+        std::size_t pair = 0;
+        for (Eigen::Index p = 0; p < 3; ++p) {
+          for (Eigen::Index q = 0; q <= p; ++q, ++pair) {
+            const double value = sum(sums.yy[pair][n]);
+            const Eigen::Index r = 6 + 6 * p, c = 6 + 6 * q;
+            H(r + i, c + j) = H(r + j, c + i) = H(c + j, r + i) = H(c + i, r + j) = value;
+          }
+        }
+      }
+    }
+    for (Eigen::Index i = 0; i < 18; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      g(6 + i) = sum(sums.gradient_y[at]);
+      for (Eigen::Index j = 0; j < 6; ++j) H(6 + i, j) = H(j, 6 + i) = sum(sums.yT[at][index(j)]);
+    }
+  }
+
+  /// The residual (ξ_1 − Δt ϖ_0 ; w_1 − ϖ_0) is linear in the local coordinates. Returns its cost.
+  double add_motion_prior(const GpInterval& interval, const Vector6& qc) {
+    const Matrix12 W = wnoa::process_information(interval.dt(), qc);
+    const Vector12 e = interval.prior_residual();
+    const Vector12 We = W * e;
+    // J = [0, −(Δt; 1), I]
+    Eigen::Matrix<double, 12, 6> WF = -interval.dt() * W.leftCols<6>() - W.rightCols<6>();
+    const Matrix6 FWF = -interval.dt() * WF.topRows<6>() - WF.bottomRows<6>();
+    H.block<6, 6>(6, 6) += FWF;
+    H.block<12, 6>(12, 6) += WF;
+    H.block<6, 12>(6, 12) += WF.transpose();
+    H.block<12, 12>(12, 12) += W;
+    g.segment<6>(6) -= interval.dt() * We.head<6>() + We.tail<6>();
+    g.tail<12>() += We;
+    return 0.5 * e.dot(We);
+  }
+};
+
+/// From the local coordinates to the increments of both states: the first 12 stay, (ξ_1, w_1) are mapped.
+void map_to_states(const LocalSystem& local, const EndMap& blocks, IntervalLinearisation& result) {
+  Matrix12x24 map = Matrix12x24::Zero();
+  map.block<6, 6>(0, 0) = blocks.xi1_T0;
+  map.block<6, 6>(0, 12) = blocks.xi1_T1;
+  map.block<6, 6>(6, 0) = blocks.w1_T0;
+  map.block<6, 6>(6, 12) = blocks.w1_T1;
+  map.block<6, 6>(6, 18) = blocks.w1_v1;
+  Matrix12x24 half;
+  half.noalias() = 0.5 * local.H.bottomRightCorner<12, 12>() * map;
+  half.leftCols<12>() += local.H.bottomLeftCorner<12, 12>();
+  Matrix24 mixed;
+  mixed.noalias() = map.transpose() * half;
+  result.states = mixed + mixed.transpose();
+  result.states.topLeftCorner<12, 12>() += local.H.topLeftCorner<12, 12>();
+  result.gradient.noalias() = map.transpose() * local.g.tail<12>();
+  result.gradient.head<12>() += local.g.head<12>();
+}
+
+/// Adds the gradient of the expansion −c log s = c log Σ 1/d_j. Its curvature is negligible against the observations'.
+void add_expansion(const IntervalInput& in, IntervalLinearisation& result) {
+  if (in.expansion == 0.0 || in.positions.empty()) return;
+  const SE3& T = in.state0.T;
+  double nearness = 0.0;
+  for (const Vector3& position : in.positions) nearness += 1.0 / (position - T.p).norm();
+  for (std::size_t j = 0; j < in.positions.size(); ++j) {
+    const Vector3 ray = in.positions[j] - T.p;
+    const Vector3 force = in.expansion / nearness / std::pow(ray.norm(), 3.0) * ray;
+    result.couplings[j].gradient -= force;
+    result.gradient.segment<3>(3) += T.R().transpose() * force;
+  }
+  result.cost += in.expansion * std::log(nearness / static_cast<double>(in.positions.size()));
+}
+
+}  // namespace
+
+void linearise_interval(const IntervalInput& in, IntervalLinearisation& result) {
+  const GpInterval interval(in.state0, in.state1);
+  const Matrix3 R0 = interval.T0().R();
+  const GpInterval::Derivatives d = interval.derivatives();
+  const EndMap map{d.xi1_T0, d.xi1_T1, d.w1_T0, d.w1_T1, d.w1_v1};
+  const auto& groups = in.observations.groups();
+  result.couplings.resize(groups.size());
+  thread_local std::vector<int> order;  // landmarks with the most observations first
+  order.resize(groups.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, [&](int a, int b) {
+    const auto& ga = groups[index(a)];
+    const auto& gb = groups[index(b)];
+    return ga.end - ga.begin > gb.end - gb.begin;
+  });
+  const Shared shared{in.loss, in.camera, Interval(interval)};
+  IntervalSums sums;
+  with_range_of(interval, [&]<Range range>() { add_landmarks<range>(shared, in, R0, map, order, sums, result); });
+  LocalSystem local(sums);
+  result.cost = sum(sums.cost) + local.add_motion_prior(interval, in.qc);
+  map_to_states(local, map, result);
+  add_expansion(in, result);
+}
+
+void linearise_interval(const FactorGraph& graph, int k, IntervalLinearisation& result) {
+  const IntervalObservations& observations = graph.intervals[index(k)];
+  thread_local std::vector<Vector3> positions;
+  positions.clear();
+  for (const auto& group : observations.groups()) {
+    positions.push_back(graph.landmarks[index(group.landmark)].position);
+  }
+  linearise_interval({graph.camera, graph.loss, graph.qcs[index(k)], graph.expansions[index(k)],
+                      graph.states[index(k - 1)], graph.states[index(k)], observations, positions},
+                     result);
+}
+
+}  // namespace evbench::smoother
