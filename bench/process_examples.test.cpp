@@ -55,6 +55,19 @@ TEST_CASE("The example back-end in Python estimates the motion, with identical r
   }
 }
 
+TEST_CASE("A back-end in Python of thirty lines runs, with numpy arrays in and out") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_example(folder, "python_minimal");
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  const std::map<std::string, Json> runs = metrics(folder, "python_minimal");
+  REQUIRE(runs.size() == 1);
+  const Json& run = runs.begin()->second;
+  CHECK(run.at("status").at("state") == "ok");
+  CHECK(ate_percent(run) < 10.0);
+  CHECK(run.at("causal").at("coverage").get<double>() > 0.9);
+}
+
 TEST_CASE("The example front-end in Python makes tracks that a back-end can use", "[long]") {
   const TemporaryFolder folder;
   const Outcome outcome = run_example(folder, "python_frontend");

@@ -1,5 +1,6 @@
 # The public headers of evbench: those that a root header includes, directly or not. In the repository they include one
 # another as "core/...", where evbench is installed as "evbench/core/...".
+cmake_policy(VERSION 3.22)
 
 # evbench_header_closure(RESULT FOLDER ROOT...): headers below FOLDER, by their paths from there, roots included.
 function(evbench_header_closure result folder)

@@ -23,11 +23,17 @@ foreach(kind backend frontend source minimal)
   add_subdirectory(my_${kind})
 endforeach()
 find_package(evbench 0.1 REQUIRED)
+evbench_add_plugin(ten_lines SOURCES ten_lines.cpp)
 foreach(name no_plugin other_abi missing_symbol)
   add_library(${name} MODULE ${name}.cpp)
   set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/odd)
 endforeach()
 ]])
+# The example at the beginning of plugin.hpp.
+file(READ ${WORK}/prefix/include/evbench/plugin.hpp ten_lines)
+string(REGEX REPLACE "^.*\n///     (#include .*)\n///\n/// Front-ends.*$" "\\1\n" ten_lines "${ten_lines}")
+string(REGEX REPLACE "\n///    ?" "\n" ten_lines "${ten_lines}")
+file(WRITE ${WORK}/project/ten_lines.cpp "${ten_lines}")
 file(WRITE ${WORK}/project/no_plugin.cpp "extern \"C\" int something() { return 1; }\n")
 file(WRITE ${WORK}/project/other_abi.cpp [[
 extern "C" const char* evbench_plugin_abi() { return "evbench plugin ABI: api 99; gcc 3"; }
@@ -69,6 +75,7 @@ foreach(kind IN LISTS kinds)
 endforeach()
 run(COMMAND ${evbench} run ${WORK}/project/my_minimal/config.json --out ${WORK}/results --plugin
             ${WORK}/build/libmy_minimal.so OUTPUT "my_minimal +[0-9]")
+run(COMMAND ${evbench} --plugin ${WORK}/build/libten_lines.so list OUTPUT "at_rest [^\n]*libten_lines.so")
 run(COMMAND ${evbench} table ${WORK}/results/my_backend OUTPUT "my_backend +[0-9]")
 run(COMMAND ${CMAKE_COMMAND} -E env EVBENCH_PLUGINS=${WORK}/build ${evbench} check-plugin my_source OUTPUT "ok")
 

@@ -51,7 +51,7 @@ void GpMap::step(double t) {
     Estimate& estimate = map_->estimate;
     map_->outliers.reject_newest(estimate, tracks_);
     map_->follower.close(estimate.smoother, t);
-    if (estimate.now() < t) estimate.smoother.add_state(t);
+    if (estimate.now() < t) estimate.smoother.add_state_at(t);
     for (const auto& [landmark, z] : tracks_.take_observations()) estimate.smoother.add_observation(landmark, z);
     map_->triangulation.drop_guesses(estimate);
     map_->triangulation.add(estimate, tracks_);

@@ -4,7 +4,7 @@ namespace evbench::gp_map {
 
 void ObservationFollower::open(Smoother& smoother, double ahead) {
   if (open_) return;
-  smoother.add_state(ahead);
+  smoother.add_state_at(ahead);
   smoother.open_newest_interval();
   open_ = true;
 }
@@ -17,7 +17,7 @@ void ObservationFollower::follow(Smoother& smoother, int landmark, const Observa
 void ObservationFollower::close(Smoother& smoother, double t) {
   if (open_ && smoother.graph().states.back().t != t) {
     smoother.remove_newest_state();
-    smoother.add_state(t);
+    smoother.add_state_at(t);
     for (const auto& [landmark, observation] : followed_) smoother.add_observation(landmark, observation);
   }
   open_ = false;

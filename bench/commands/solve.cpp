@@ -4,10 +4,11 @@
 #include <map>
 #include <memory>
 
-#include "core/smoother/problem_solver.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/number_check.hpp"
 #include "core/io/atomic_file.hpp"
+#include "core/smoother/cost.hpp"
+#include "core/smoother/problem_solver.hpp"
 #include "core/support/error.hpp"
 #include "core/support/json.hpp"
 #include "eval/quantile.hpp"
@@ -16,8 +17,8 @@ namespace evbench {
 namespace {
 
 const std::map<std::string, smoother::SolveMode> kModes = {{"incremental", smoother::SolveMode::incremental},
-                                                         {"batch", smoother::SolveMode::batch},
-                                                         {"fixed-lag", smoother::SolveMode::fixed_lag}};
+                                                           {"batch", smoother::SolveMode::batch},
+                                                           {"fixed-lag", smoother::SolveMode::fixed_lag}};
 
 struct SolveArguments {
   std::string problem, json, states, steps;

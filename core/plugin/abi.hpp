@@ -17,8 +17,8 @@
 
 // Hash of the headers that plugins include, with which this is compiled. The build of evbench and evbench_add_plugin()
 // set it, so that a changed header is noticed even if the version is forgotten.
-#if !defined(EVBENCH_PLUGIN_HEADERS) && __has_include("plugin_headers.hpp")
-#include "plugin_headers.hpp"
+#if !defined(EVBENCH_PLUGIN_HEADERS) && __has_include(<evbench/plugin_headers.hpp>)
+#include <evbench/plugin_headers.hpp>
 #endif
 #ifndef EVBENCH_PLUGIN_HEADERS
 #define EVBENCH_PLUGIN_HEADERS "unknown"

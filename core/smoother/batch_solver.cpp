@@ -1,5 +1,6 @@
 #include "core/smoother/batch_solver.hpp"
 
+#include "core/smoother/factors.hpp"
 #include "core/smoother/graph_variables.hpp"
 #include "core/support/index.hpp"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "core/smoother/factors.hpp"
+#include "core/smoother/factor_graph.hpp"
 
 namespace evbench::smoother {
 

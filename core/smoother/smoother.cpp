@@ -25,7 +25,7 @@ int Smoother::first_state() const { return engine_->first_state(); }
 bool Smoother::is_marginalised(int landmark) const { return engine_->is_marginalised(landmark); }
 double Smoother::reprojection_mean(int landmark) { return engine_->reprojection_mean(landmark); }
 void Smoother::add_state(const ControlState& guess) { engine_->add_state(guess); }
-void Smoother::add_state(double t) { engine_->add_state(t); }
+void Smoother::add_state_at(double t) { engine_->add_state_at(t); }
 void Smoother::add_pose_prior(const PosePrior& prior) { engine_->add_pose_prior(prior); }
 void Smoother::add_velocity_prior(const VelocityPrior& prior) { engine_->add_velocity_prior(prior); }
 void Smoother::anchor_scale(const Vector3& origin, std::vector<int> landmarks) {

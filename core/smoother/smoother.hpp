@@ -69,7 +69,7 @@ struct OptimiseSummary {
 ///   smoother.add_state({0.0, SE3(), Vector6::Zero()});
 ///   smoother.add_pose_prior({0, SE3(), Vector6::Constant(1e-4)});
 ///   for each key time t:
-///     smoother.add_state(t);                       // continues the newest one with constant velocity
+///     smoother.add_state_at(t);                    // continues the newest one with constant velocity
 ///     smoother.add_observation(landmark, {time, pixel, 1.0 / sigma});  // any time until t
 ///     smoother.update();
 ///     smoother.graph().states.back();              // the newest estimate
@@ -105,8 +105,8 @@ class Smoother {
 
   /// Adds a state later than the newest one, with the motion prior between them.
   void add_state(const ControlState& guess);
-  /// The same, extrapolated from the newest state with constant velocity.
-  void add_state(double t);
+  /// The same at t, extrapolated from the newest state with constant velocity; the first one at the origin, at rest.
+  void add_state_at(double t);
   void add_pose_prior(const PosePrior& prior);
   void add_velocity_prior(const VelocityPrior& prior);
   void anchor_scale(const Vector3& origin, std::vector<int> landmarks);

@@ -19,7 +19,7 @@ int main() {
     smoother.add_landmark(position + Vector3(0.05 * std::sin(j), 0.0, 0.05 * std::cos(j)), {position, 0.1});
   }
   for (int k = 1; k <= 40; ++k) {
-    smoother.add_state(0.05 * k);  // [s], continues with constant velocity
+    smoother.add_state_at(0.05 * k);  // [s], continues with constant velocity
     for (int j = 0; j < 30; ++j) {
       const double t = 0.05 * k - 0.001 * j;  // its own time
       const Vector3 point = pose(t).inverse() * Vector3(0.25 * (j % 6 - 2.5), 0.25 * (j / 6 - 2), 2.0);

@@ -16,7 +16,7 @@ void solve(const char* path) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<int> numbers(whole.landmarks.size(), -1);  // in the smoother: a landmark enters with its first interval
   for (std::size_t k = 0; k < whole.states.size(); ++k) {
-    k == 0 ? smoother.add_state(whole.states[0]) : smoother.add_state(whole.states[k].t);
+    k == 0 ? smoother.add_state(whole.states[0]) : smoother.add_state_at(whole.states[k].t);
     const int state = static_cast<int>(k);
     for (const PosePrior& prior : whole.pose_priors) {
       if (prior.state == state) smoother.add_pose_prior(prior);

@@ -34,6 +34,7 @@
 
 #include "core/events/event_front_end.hpp"
 #include "core/geometry/se3.hpp"
+#include "core/geometry/so3.hpp"
 #include "core/motion/gp_interval.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/frontend.hpp"

@@ -219,7 +219,7 @@ bool AlternativeSearch::pass() {
 /// Adds a state. New landmarks begin on the plane.
 void AlternativeSearch::add_state(int k) {
   forward_.set_next_qc(problem_.qcs[index(k)]);
-  forward_.add_state(problem_.states[index(k)].t);
+  forward_.add_state_at(problem_.states[index(k)].t);
   for (const auto& group : problem_.intervals[index(k)].groups()) {
     const auto observations = problem_.intervals[index(k)].of(group);
     int& j = in_engine_[index(group.landmark)];

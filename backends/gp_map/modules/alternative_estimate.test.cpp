@@ -62,7 +62,7 @@ TEST_CASE("States and landmarks that were added since the search are moved along
   const auto other = try_alternatives(wrong, 0, kEnough, StructureHypothesis::frontal_plane);
   REQUIRE(other);
   Smoother smoother(wrong, {});
-  smoother.add_state(kStep * kStates);
+  smoother.add_state_at(kStep * kStates);
   const Vector3 in_camera(0.1, 0.2, 2.0);
   // A landmark is added with all observations of its track: one is seen by the new state, one only by an earlier one.
   for (const int k : {kStates, kStates - 3}) {

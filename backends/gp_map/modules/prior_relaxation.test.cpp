@@ -28,7 +28,7 @@ double relaxation_for(int seen, double offset, double turn) {
   std::vector<int> in_view;
   for (const auto& group : smoother.graph().intervals.back().groups()) in_view.push_back(group.landmark);
   REQUIRE(std::ssize(in_view) >= seen);
-  smoother.add_state(t);
+  smoother.add_state_at(t);
   const FactorGraph& graph = smoother.graph();
   for (int i = 0; i < seen; ++i) {
     const Vector3& position = graph.landmarks[index(in_view[index(i)])].position;

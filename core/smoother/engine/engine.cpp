@@ -34,8 +34,8 @@ void Engine::add_state(const ControlState& guess) {
   mark_dirty(static_cast<int>(graph_.states.size()) - 1);
 }
 
-void Engine::add_state(double t) {
-  const ControlState& newest = graph_.states.back();
+void Engine::add_state_at(double t) {
+  const ControlState newest = graph_.states.empty() ? ControlState{t, SE3(), Vector6::Zero()} : graph_.states.back();
   add_state(extrapolate(newest, t - newest.t));
 }
 

@@ -21,7 +21,7 @@ class Engine {
   bool is_marginalised(int landmark) const { return factorisation_.is_marginalised(landmark); }
   double reprojection_mean(int landmark);
   void add_state(const ControlState& guess);
-  void add_state(double t);
+  void add_state_at(double t);
   void add_pose_prior(const PosePrior& prior);
   void add_velocity_prior(const VelocityPrior& prior);
   void anchor_scale(const Vector3& origin, std::vector<int> landmarks);

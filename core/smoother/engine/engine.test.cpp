@@ -182,6 +182,21 @@ TEST_CASE(
   CHECK_FALSE(lag.neighbours(first - 1));
 }
 
+TEST_CASE("A state at a time continues the newest one, and the first one is at the origin") {
+  Smoother smoother({200.0, 200.0, 120.0, 90.0}, Vector6::Constant(0.2), RobustLoss());
+  smoother.add_state_at(1.0);
+  const ControlState& first = smoother.graph().states.front();
+  CHECK(first.t == 1.0);
+  CHECK(first.T.p.norm() == 0.0);
+  CHECK(first.velocity.norm() == 0.0);
+  ControlState moving;
+  moving.t = 2.0;
+  moving.velocity << 0.0, 0.0, 0.0, 0.5, 0.0, 0.0;
+  smoother.add_state(moving);
+  smoother.add_state_at(2.2);
+  CHECK(smoother.graph().states.back().T.p.x() == Approx(0.1));
+}
+
 TEST_CASE("An undetermined variable is named and regularised, and the rest is solved") {
   Smoother engine({200.0, 200.0, 120.0, 90.0}, Vector6::Constant(0.2), RobustLoss());
   engine.add_state({});
