@@ -215,6 +215,13 @@ TEST_CASE("Metrics of a run have the documented keys, the same as those of evben
     CHECK(times.at("max") > 0.0);
   }
   CHECK(metrics.at("status") == json_file(path, "status.json"));
+  REQUIRE(metrics.at("events").size() >= 3);
+  const Json& first = metrics.at("events").front();
+  CHECK(first.at("kind") == "initialised");
+  CHECK(first.at("t").get<double>() > 0.0);
+  CHECK_THAT(read_file(path + "/log.txt"), ContainsSubstring(first.at("text").get<std::string>()));
+  CHECK(metrics.at("counters").at("initial_maps") == 1);
+  CHECK(metrics.at("counters").at("landmarks").get<int>() > 10);
   for (const char* trajectory : {"final", "causal"}) {
     for (const char* key : {"/ate/trans_m/rmse", "/ate/rot_deg/rmse", "/ate/trans_percent", "/rpe/trans_m/rmse",
                             "/rpe/rot_deg/median", "/rpe/pairs", "/coverage", "/pairs", "/scale", "/path_m"}) {

@@ -111,8 +111,8 @@ Json metrics_json(const RunRecord& record, bool scores) {
   if (!record.track_scores.is_null()) json["tracks"] = record.track_scores;
   json["times"] = record.times ? to_json(*record.times) : Json();
   json["peak_rss_mib"] = or_null(record.peak_rss_mib);
-  if (!record.events.is_null()) json["events"] = record.events;
-  if (!record.counters.is_null()) json["counters"] = record.counters;
+  json["events"] = record.events;
+  json["counters"] = record.counters;
   json["status"] = record.status ? to_json(*record.status) : Json();
   return json;
 }
