@@ -37,6 +37,8 @@ function(evbench_add_plugin name)
   if(EVBENCH_PLUGIN_INCLUDE)  # outside of evbench's own build
     evbench_header_closure(headers ${EVBENCH_PLUGIN_INCLUDE} evbench/plugin.hpp)
     evbench_header_hash(hash ${EVBENCH_PLUGIN_INCLUDE} ${headers})
+    list(TRANSFORM headers PREPEND ${EVBENCH_PLUGIN_INCLUDE}/)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${headers})  # another evbench may be installed later
     target_compile_definitions(${name} PRIVATE EVBENCH_PLUGIN_HEADERS="${hash}")
   endif()
   target_link_libraries(${name} PRIVATE ${name}_objects)

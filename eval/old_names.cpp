@@ -12,8 +12,8 @@ namespace evbench {
 namespace {
 
 struct OldName {
-  const char* part;  ///< of the config: backend, pipeline
-  const char* type;  ///< of the plugin; empty: any
+  const char* part;    ///< of the config: backend, pipeline
+  const char* type;    ///< of the plugin; empty: any
   const char* before;  ///< a key, or GROUP.KEY
   const char* now;     ///< likewise
 };
@@ -26,6 +26,8 @@ constexpr OldName kKeys[] = {
     {"backend", "bundle_adjustment", "min_track_frames", "min_track_batches"},
     {"backend", "gp_map", "map.outlier_threshold", "outliers.threshold"},
     {"backend", "gp_map", "map.returns", "reassociation.returns"},
+    {"backend", "gp_map", "map.leverage", "leverage.nearness"},
+    {"backend", "gp_map", "map.search_interval", "search.interval"},
     {"pipeline", "", "still_after", "stationary_after"},
 };
 
@@ -51,7 +53,8 @@ bool rename_path(Json& part, const char* before, const char* now) {
   const Json::json_pointer old_place = pointer_to(before), place = pointer_to(now), group = place.parent_pointer();
   if (!part.contains(old_place) || part.contains(place)) return false;
   if (part.contains(group) && !part[group].is_object()) return false;
-  part[place] = part[old_place];
+  Json value = part[old_place];
+  part[place] = std::move(value);
   Json& left = part[old_place.parent_pointer()];
   left.erase(old_place.back());
   if (left.empty() && &left != &part) part.erase(old_place.parent_pointer().back());

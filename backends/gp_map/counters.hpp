@@ -13,10 +13,10 @@ enum class Count {
   landmarks,                ///< that tracks became
   landmarks_without_depth,  ///< of these: at the scene's depth, until they show parallax
   misfits,                  ///< attempts to triangulate a track that no point fits
-  leverage_bounded,         ///< landmarks
+  leverage_bounded,         ///< times that a landmark got larger sigmas for its nearness
   outliers,                 ///< landmarks removed
   truncated,                ///< landmarks whose tracks drifted later
-  noisier_tracks,           ///< tracks that got larger sigmas than others
+  noisier_tracks,           ///< times that a track got larger sigmas than most
   relaxations_tried,        ///< control states for which weaker priors were tried
   priors_relaxed,           ///< of these: for which one was kept
   searches,
@@ -25,7 +25,7 @@ enum class Count {
   reacquired_as_new,  ///< tracks that became another landmark
   reassociations_rejected,
   scale_anchored_anew,
-  updates,         ///< of the smoother, without those of searches and of the final estimate
+  updates,         ///< of the smoother, without those of searches and of the final estimate of a full history
   updates_damped,  ///< of these, those whose step would have raised the cost
   stages,          ///< that the updates redid
   count,

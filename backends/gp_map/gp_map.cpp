@@ -87,6 +87,7 @@ bool GpMap::initialise(double t) {
   map_.emplace(std::move(first->graph), options_, rejected, counters_);
   for (std::size_t j = 0; j < first->tracks.size(); ++j) tracks_.become_landmark(first->tracks[j], static_cast<int>(j));
   ++counters_[Count::initial_maps];
+  counters_[Count::landmarks] += static_cast<std::int64_t>(first->tracks.size());
   report("initialised",
          fmt::format("initial map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
                      graph().landmarks.size(), graph().observation_count(), first->parallax_deg,

@@ -24,7 +24,9 @@ void MapOptions::declare(OptionSet& set) {
       .range(0.0);
   set.add("depth_sigma", depth_sigma, "standard deviation of that guess, as a share of the depth").above(0.0);
   set.add("tentative", tentative,
-          "until it has seen so much motion, the whole map may be replaced, and no track is rejected for its past [s]")
+          "until it has seen so much motion, the whole map may be replaced, and no track is rejected or truncated by "
+          "its "
+          "averaged errors of the last second [s]")
       .range(0.0);
 }
 

@@ -32,6 +32,7 @@ void MotionPrior::follow(Estimate& estimate) {
 void MotionPrior::smooth(Estimate& estimate, const TimeSpan& span, std::span<const double> surplus) {
   if (learn_ == LearnPrior::never) return;
   learn_prior(estimate.smoother, span, surplus);
+  if (span.is_everything()) return;  // the final density is recorded beside this one
   const int k = estimate.graph().first_state_after(span.until) - 1;
   if (k > estimate.smoother.first_state()) smoothed_ = estimate.graph().qcs[index(k)];
 }

@@ -41,9 +41,8 @@ void Reassociation::observe(Estimate& estimate, TrackTable& tracks, const TrackO
   const int last = intervals.empty() ? 0 : intervals.back();
   const bool reappears = track.ended && last > 0 && z.t - estimate.graph().states[index(last)].t > kGone;
   if (!continues(estimate, track)) {
-    split(estimate, tracks, z.track);
-    if (reappears) estimate.count(Count::reacquired_as_new);
-  } else if (reappears) {
+    if (split(estimate, tracks, z.track)) estimate.count(Count::reacquired_as_new);
+  } else if (reappears && !tracks.reappeared().contains(z.track)) {
     tracks.reappear(z.track, {track.landmark, z.t, z.pixel, 1.0 / (sigma_scale_ * z.noise.sigma())});
     estimate.count(Count::reacquired);
   }
@@ -56,17 +55,19 @@ bool Reassociation::continues(const Estimate& estimate, const TrackTable::Track&
   return !track.ended || seen.empty() || seen.back() >= newest || returns_.spend(seen.back(), newest + 1);
 }
 
-/// The covariance of the old landmark counts as independent of the motion since.
-void Reassociation::split(Estimate& estimate, TrackTable& tracks, TrackId id) const {
+/// The covariance of the old landmark counts as independent of the motion since. False, and the track waits, if it is
+/// not known.
+bool Reassociation::split(Estimate& estimate, TrackTable& tracks, TrackId id) const {
   const int old = tracks.at(id).landmark;
   const std::optional<Matrix3> known = estimate.kept_covariance(old);
   if (!known) {
     tracks.wait_again(id);
-    return;
+    return false;
   }
   const Vector3 position = estimate.graph().landmarks[index(old)].position;
   const double sigma = std::sqrt(known->selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff());
   tracks.become_another(id, estimate.add_landmark(position, {position, sigma}));
+  return true;
 }
 
 void Reassociation::check(Estimate& estimate, TrackTable& tracks) const {

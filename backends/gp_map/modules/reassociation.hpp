@@ -34,7 +34,7 @@ class Reassociation {
 
  private:
   bool continues(const Estimate& estimate, const TrackTable::Track& track);
-  void split(Estimate& estimate, TrackTable& tracks, TrackId id) const;
+  bool split(Estimate& estimate, TrackTable& tracks, TrackId id) const;
 
   ReassociationOptions options_;
   double sigma_scale_;

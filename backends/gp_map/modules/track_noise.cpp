@@ -29,7 +29,7 @@ void TrackNoise::estimate_tracks(Estimate& estimate, const TimeSpan& span) const
   for (const auto& [j, scale] : own) {
     const double present = estimate.track_noise(j);
     if (scale < change * present && scale > present / change) continue;
-    if (present == 1.0) estimate.count(Count::noisier_tracks);
+    if (present == 1.0 && scale > 1.0) estimate.count(Count::noisier_tracks);
     estimate.set_track_noise(j, scale);
   }
 }
