@@ -76,9 +76,12 @@ TEST_CASE("Tracks without parallax determine rotation, and a guessed depth impro
     const TrackedScene turning(6.0, scene, seed);
     for (auto& [errors, options] : {std::pair{&patient, R"({"map": {"patience": 100}})"}, {&guessing, "{}"}}) {
       const auto result = run(turning, {.backend = options});
+      INFO("seed " << seed << ": " << result.backend->status().reason << ", " << result.scores.ate.trans_percent
+                   << " %");
       CHECK(result.backend->status().state != RunState::failed);
       errors->push_back(result.scores.ate.trans_percent);
-      if (errors == &guessing) CHECK(result.backend->status().state == RunState::ok);
+      const RunState state = result.backend->status().state;
+      if (errors == &guessing) CHECK((state == RunState::ok || (state == RunState::degraded && errors->back() > 1.0)));
     }
   }
   CHECK(median(guessing) < 0.7 * median(patient));
