@@ -77,7 +77,8 @@ struct RunRecord {
   std::optional<double> realtime_factor;        ///< data_s / runtime_s
   std::optional<RecordedTimes> times;
   std::optional<double> peak_rss_mib;
-  Json events;    ///< what happened, in order of report: [{"t": [s], "kind": a word, "text": a sentence}]; null: not known
+  Json
+      events;  ///< what happened, in order of report: [{"t": [s], "kind": a word, "text": a sentence}]; null: not known
   Json counters;  ///< what the back-end counted: {name: number}; null: not known
   std::optional<RunStatus> status;
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "backends/gp_map/final_estimate.hpp"
+#include "backends/gp_map/learning.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/smoother/problem_graph.hpp"
 #include "core/support/seconds_since.hpp"

@@ -118,7 +118,7 @@ RobustLoss cauchy(double sigma) { return {RobustLoss::Kind::cauchy, kLossWidth *
 Errors white(const FactorGraph&, const TrackNoise& noise) { return {cauchy(std::hypot(noise.white, noise.drift)), {}}; }
 
 Errors fewer(const FactorGraph& graph, const TrackNoise&) {
-  return {learn_noise(graph).loss(RobustLoss::Kind::cauchy, kLossWidth), {}};
+  return {gp_map::learn_noise(graph).loss(RobustLoss::Kind::cauchy, kLossWidth), {}};
 }
 
 /// The drift's means over windows as offsets; the rest of it is modelled as white noise.

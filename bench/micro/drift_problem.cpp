@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/smoother/factors.hpp"
 #include "core/geometry/seen_point.hpp"
+#include "core/smoother/factors.hpp"
 #include "core/support/index.hpp"
 
 namespace evbench {

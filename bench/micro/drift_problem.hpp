@@ -55,9 +55,9 @@ class DriftProblem {
   smoother::FactorGraph graph_;
   smoother::GraphLayout layout_;
   std::vector<smoother::IntervalObservations> observed_;  ///< with the offsets in them
-  std::vector<std::vector<int>> offset_of_;             ///< by interval and observation; empty: there are none
-  std::vector<Vector2> offsets_;                        ///< [stated sigmas]
-  std::vector<Link> links_;                             ///< of each
+  std::vector<std::vector<int>> offset_of_;               ///< by interval and observation; empty: there are none
+  std::vector<Vector2> offsets_;                          ///< [stated sigmas]
+  std::vector<Link> links_;                               ///< of each
 };
 
 /// Covariances at a problem's estimate (Gauss-Newton approximation).

@@ -9,8 +9,10 @@
 #include <cmath>
 #include <vector>
 
-#include "core/smoother/smoother.hpp"
+#include "core/smoother/engine/dense_kernels.hpp"
+#include "core/smoother/factors.hpp"
 #include "core/smoother/problem_graph.hpp"
+#include "core/smoother/smoother.hpp"
 #include "core/support/index.hpp"
 #include "core/support/seconds_since.hpp"
 

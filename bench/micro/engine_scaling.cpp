@@ -14,8 +14,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/smoother/problem_solver.hpp"
 #include "bench/micro/track_problem.hpp"
+#include "core/smoother/engine/dense_kernels.hpp"
+#include "core/smoother/factors.hpp"
+#include "core/smoother/problem_solver.hpp"
 #include "eval/quantile.hpp"
 
 namespace {

@@ -130,8 +130,8 @@ void BackEndRunner::relocalise() {
   }
   if (found && last_found_ && found->world == last_found_->world && agree(found->to_world, last_found_->to_world)) {
     if (!estimator.is_relocalised()) {
-      context_.event({until_, "relocalised",
-                      fmt::format("relocalised in the earlier world, by {} landmarks", found->landmarks)});
+      context_.event(
+          {until_, "relocalised", fmt::format("relocalised in the earlier world, by {} landmarks", found->landmarks)});
     }
     estimator.relocalise(*found);
     remember_landmarks();

@@ -66,8 +66,8 @@ using Progress = std::function<void(const RunProgress&)>;
 using MakeBackEnd = std::function<std::unique_ptr<BackEnd>(const BackEndContext&)>;
 
 /// Runs front-end and back-end from the beginning of the source's time range to its end. Of `context` the camera,
-/// patience, publish, event and log are set here. `trajectory_rate`: of the final trajectories [Hz]; 0: the back-end's own
-/// poses. `keep_tracks`: fills RunResult::tracks.
+/// patience, publish, event and log are set here. `trajectory_rate`: of the final trajectories [Hz]; 0: the back-end's
+/// own poses. `keep_tracks`: fills RunResult::tracks.
 RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackEnd& make_backend,
                        BackEndContext context, const PipelineOptions& options, double trajectory_rate,
                        const Progress& progress = {}, bool keep_tracks = false);

@@ -77,8 +77,8 @@ namespace evbench {
 /// The ABI text of this translation unit: the mark, then parts separated by "; " in a fixed order.
 inline const char* plugin_abi() {
   return EVBENCH_PLUGIN_ABI_MARK
-      "api " EVBENCH_ABI_TEXT(EVBENCH_PLUGIN_API) " with headers " EVBENCH_PLUGIN_HEADERS "; " EVBENCH_ABI_COMPILER "; " EVBENCH_ABI_LIBRARY
-                                                  "; " EVBENCH_ABI_EIGEN "; " EVBENCH_ABI_JSON
+      "api " EVBENCH_ABI_TEXT(EVBENCH_PLUGIN_API) " with headers " EVBENCH_PLUGIN_HEADERS "; " EVBENCH_ABI_COMPILER
+                                                  "; " EVBENCH_ABI_LIBRARY "; " EVBENCH_ABI_EIGEN "; " EVBENCH_ABI_JSON
                                                   "; " EVBENCH_ABI_SANITIZER;
 }
 

@@ -1,4 +1,4 @@
-#include "backends/gp_map/final_estimate.hpp"
+#include "backends/gp_map/learning.hpp"
 
 #include <vector>
 
