@@ -49,10 +49,10 @@ struct Comparison {
 /// Throws at its first observations.
 class Breaking : public BackEnd {
  public:
-  void advance(const TrackBatch& batch) override {
+  void advance(const UndistortedBatch& batch) override {
     if (!batch.observations.empty()) throw std::runtime_error("the matrix is singular");
   }
-  Feedback feedback(const FeedbackNeeds&) override { return {}; }
+  BackEndFeedback feedback(const FeedbackNeeds&) override { return {}; }
   void finish() override {}
   Status status() const override { return {}; }
   PoseTrajectory trajectory() const override { return {}; }

@@ -7,7 +7,7 @@
 
 namespace evbench::bundle_adjustment {
 
-void BatchBuilder::gather(const TrackObservation& z) {
+void BatchBuilder::gather(const UndistortedObservation& z) {
   gathered_.push_back(z);
   shifts_.try_emplace(z.track, Shift{z.pixel, z.pixel}).first->second.to = z.pixel;
 }
@@ -33,7 +33,7 @@ Batch BatchBuilder::close(double end) {
   };
   std::map<TrackId, Sum> sums;
   double time = 0.0;
-  for (const TrackObservation& z : gathered_) {
+  for (const UndistortedObservation& z : gathered_) {
     Sum& sum = sums[z.track];
     sum.pixel += z.pixel;
     sum.covariance += z.noise.covariance();
@@ -56,9 +56,9 @@ Batch BatchBuilder::close(double end) {
   return batch;
 }
 
-std::vector<Batch> BatchBuilder::add(std::span<const TrackObservation> observations) {
+std::vector<Batch> BatchBuilder::add(std::span<const UndistortedObservation> observations) {
   std::vector<Batch> batches;
-  for (const TrackObservation& z : observations) {
+  for (const UndistortedObservation& z : observations) {
     if (!start_) start_ = z.t;
     for (Batch& batch : advance(z.t)) batches.push_back(std::move(batch));
     gather(z);

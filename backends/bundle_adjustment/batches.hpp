@@ -40,7 +40,7 @@ class BatchBuilder {
   explicit BatchBuilder(const BatchRule& rule) : rule_(rule) {}
 
   /// Adds observations in time order; returns the batches that they complete.
-  std::vector<Batch> add(std::span<const TrackObservation> observations);
+  std::vector<Batch> add(std::span<const UndistortedObservation> observations);
 
   /// Returns the batches that time completes at or before t. All observations up to t must have been added.
   std::vector<Batch> advance(double t);
@@ -51,13 +51,13 @@ class BatchBuilder {
  private:
   BatchRule rule_;
   std::optional<double> start_;  // of the batch in progress
-  std::vector<TrackObservation> gathered_;
+  std::vector<UndistortedObservation> gathered_;
   struct Shift {
     Vector2 from, to;
   };
   std::map<TrackId, Shift> shifts_;  // of each track in the batch
 
-  void gather(const TrackObservation& z);
+  void gather(const UndistortedObservation& z);
   bool is_full() const;
   double median_shift() const;
   Batch close(double end);

@@ -10,7 +10,7 @@ using namespace evbench::bundle_adjustment;
 
 namespace {
 
-TrackObservation observation(TrackId id, double t, double x, double sigma = 1.0) {
+UndistortedObservation observation(TrackId id, double t, double x, double sigma = 1.0) {
   return {id, t, {x, 2.0 * x}, sigma};
 }
 
@@ -32,7 +32,7 @@ TEST_CASE("a feature in a batch is the mean of its observations, at their mean t
 
 TEST_CASE("noise that a track's observations share stays in their mean") {
   BatchBuilder builder({.duration = 0.1, .common_noise_px = 0.6});
-  std::vector<TrackObservation> observations;
+  std::vector<UndistortedObservation> observations;
   for (int i = 0; i < 50; ++i) observations.push_back(observation(1, 0.001 * i, 10));
   builder.add(observations);
   CHECK(builder.advance(0.1).at(0).keypoints.at(0).noise.sigma() == Approx(std::sqrt(0.36 + 0.64 / 50)));
@@ -53,7 +53,7 @@ TEST_CASE("batches by duration follow one another, and a gap makes none") {
 
 TEST_CASE("batches by count have that many observations") {
   BatchBuilder builder({0.1, 3});
-  std::vector<TrackObservation> observations;
+  std::vector<UndistortedObservation> observations;
   for (int i = 0; i < 8; ++i) observations.push_back(observation(1, 0.5 * i, i));
   const std::vector<Batch> batches = builder.add(observations);
   REQUIRE(batches.size() == 2);
@@ -67,7 +67,7 @@ TEST_CASE("batches by count have that many observations") {
 
 TEST_CASE("batches by motion end when the median track has moved so far, within bounds of time") {
   BatchBuilder builder({.duration = 0.5, .motion_px = 5.0, .shortest_duration = 0.02});
-  std::vector<TrackObservation> observations;
+  std::vector<UndistortedObservation> observations;
   // Three tracks at 40, 100 and 0 px/s for a second, then ten times as fast, then at rest.
   for (int i = 0; i <= 200; ++i) {
     const double t = 0.01 * i, fast = std::clamp(t - 1.0, 0.0, 0.2);

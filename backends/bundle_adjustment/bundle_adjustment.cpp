@@ -70,12 +70,12 @@ SolverOptions BundleAdjustment::solver_options(int iterations) const {
   return {options_.loss, options_.loss_width * noise_factor_, iterations};
 }
 
-void BundleAdjustment::advance(const TrackBatch& batch) {
+void BundleAdjustment::advance(const UndistortedBatch& batch) {
   until_ = batch.until;
   in_time_order(
-      batch.observations, batch.ended, [&](const TrackObservation& z) { live_.insert(z.track); },
+      batch.observations, batch.ended, [&](const UndistortedObservation& z) { live_.insert(z.track); },
       [&](const TrackEnd& ended) { live_.erase(ended.track); });
-  for (std::span<const TrackObservation> rest(batch.observations); !rest.empty();) {
+  for (std::span<const UndistortedObservation> rest(batch.observations); !rest.empty();) {
     const auto last =
         std::ranges::adjacent_find(rest, [](const auto& a, const auto& b) { return b.t - a.t > kShortestSilence; });
     const auto part = rest.first(last == rest.end() ? rest.size() : static_cast<std::size_t>(last - rest.begin()) + 1);
@@ -255,7 +255,7 @@ std::string BundleAdjustment::locate(int view) {
 void BundleAdjustment::remember(int view) {
   const View& now = map_.views[at(view)];
   for (const Keypoint& z : now.keypoints) {
-    const TrackObservation mean{z.track, now.t, z.pixel, z.noise};
+    const UndistortedObservation mean{z.track, now.t, z.pixel, z.noise};
     means_.add(std::span(&mean, 1));
   }
 }
@@ -364,8 +364,8 @@ void BundleAdjustment::fill_predicted() {
   }
 }
 
-Feedback BundleAdjustment::feedback(const FeedbackNeeds& needs) {
-  Feedback result{until_, monitor_.state(), {}, {}, std::exchange(new_outliers_, {}), {}};
+BackEndFeedback BundleAdjustment::feedback(const FeedbackNeeds& needs) {
+  BackEndFeedback result{monitor_.state(), {}, {}, std::exchange(new_outliers_, {}), {}};
   if (segments_.empty() || monitor_.lost()) return result;
   result.newest = ControlState{map_.views.back().t, map_.views.back().T, velocity_};
   if (needs.expected) result.expected = expected_features();
@@ -373,9 +373,9 @@ Feedback BundleAdjustment::feedback(const FeedbackNeeds& needs) {
 }
 
 /// All landmarks, predicted with constant velocity. The uncertainty is not estimated: outlier_px.
-std::vector<ExpectedFeature> BundleAdjustment::expected_features() const {
+std::vector<UndistortedFeature> BundleAdjustment::expected_features() const {
   const SE3 T_camera_world = predict(until_, static_cast<int>(map_.views.size()) - 1).inverse();
-  std::vector<ExpectedFeature> result;
+  std::vector<UndistortedFeature> result;
   for (const auto& [id, track] : map_.tracks) {
     if (!track.position) continue;
     const Vector3 point = T_camera_world * *track.position;

@@ -33,8 +33,8 @@ class BundleAdjustment : public BackEnd {
 
   BundleAdjustment(const Options& options, const BackEndContext& context);
 
-  void advance(const TrackBatch& batch) override;
-  Feedback feedback(const FeedbackNeeds& needs) override;
+  void advance(const UndistortedBatch& batch) override;
+  BackEndFeedback feedback(const FeedbackNeeds& needs) override;
   void finish() override;
 
   Status status() const override { return monitor_.status(); }
@@ -86,7 +86,7 @@ class BundleAdjustment : public BackEnd {
   void remember(int view);
   void reset_initialisation();
   void pass_time(double t);
-  std::vector<ExpectedFeature> expected_features() const;
+  std::vector<UndistortedFeature> expected_features() const;
   void learn_noise(int first);
   SolveReport solve_window(int view);
   bool remove_outliers(int first);

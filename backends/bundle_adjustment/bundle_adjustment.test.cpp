@@ -7,6 +7,7 @@
 #include "core/data/calib.hpp"
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
+#include "core/plugin/undistort.hpp"
 #include "core/support/index.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
@@ -41,9 +42,9 @@ struct Simulation {
 };
 
 /// Observations of fifty points at 100 Hz, each at its own times, in time order.
-std::vector<TrackObservation> simulate(const Simulation& simulation) {
+std::vector<UndistortedObservation> simulate(const Simulation& simulation) {
   Random random(4);
-  std::vector<TrackObservation> result;
+  std::vector<UndistortedObservation> result;
   TrackId id = 0;
   for (const Vector3& point : testing::scene_points(simulation.scene, 50, random, 2.0)) {
     const bool outlier = random.uniform(0.0, 1.0) < simulation.outlier_share;
@@ -59,7 +60,7 @@ std::vector<TrackObservation> simulate(const Simulation& simulation) {
     }
     ++id;
   }
-  std::sort(result.begin(), result.end(), [](const TrackObservation& a, const TrackObservation& b) {
+  std::sort(result.begin(), result.end(), [](const UndistortedObservation& a, const UndistortedObservation& b) {
     return a.t != b.t ? a.t < b.t : a.track < b.track;
   });
   return result;
@@ -78,8 +79,8 @@ BundleAdjustment make(const PinholeCamera& camera = davis(), const Options& opti
   return BundleAdjustment(options, context);
 }
 
-void feed(BundleAdjustment& backend, const std::vector<TrackObservation>& observations) {
-  TrackBatch batch;
+void feed(BundleAdjustment& backend, const std::vector<UndistortedObservation>& observations) {
+  UndistortedBatch batch;
   for (std::size_t begin = 0, end = 0; begin < observations.size(); begin = end) {
     const double t = observations[begin].t + 0.01;
     while (end < observations.size() && observations[end].t <= t) ++end;
@@ -218,12 +219,12 @@ TEST_CASE("the same observations give the same trajectory to the last bit", "[sl
 }
 
 TEST_CASE("no observations, one track, and few tracks end as failed with a reason") {
-  std::vector<TrackObservation> one, few;
-  for (const TrackObservation& z : simulate({})) {
+  std::vector<UndistortedObservation> one, few;
+  for (const UndistortedObservation& z : simulate({})) {
     if (z.track == 7) one.push_back(z);
     if (z.track < 7) few.push_back(z);
   }
-  for (const auto& observations : {std::vector<TrackObservation>{}, one, few}) {
+  for (const auto& observations : {std::vector<UndistortedObservation>{}, one, few}) {
     std::vector<StampedPose> causal;
     BundleAdjustment backend = make(davis(), {}, &causal);
     feed(backend, observations);
@@ -278,8 +279,8 @@ TEST_CASE("after a blackout that ends all tracks a new map is initialised at the
 }
 
 TEST_CASE("when tracks run out for good the run is lost at that time and keeps its trajectory") {
-  std::vector<TrackObservation> observations = simulate({});
-  std::erase_if(observations, [](const TrackObservation& z) { return z.t > 2.0 && z.track > 3; });
+  std::vector<UndistortedObservation> observations = simulate({});
+  std::erase_if(observations, [](const UndistortedObservation& z) { return z.t > 2.0 && z.track > 3; });
   BundleAdjustment backend = make();
   feed(backend, observations);
   CHECK(backend.status().state == RunState::lost);
@@ -289,7 +290,7 @@ TEST_CASE("when tracks run out for good the run is lost at that time and keeps i
 }
 
 TEST_CASE("absurd observations never give a pose that is not finite") {
-  std::vector<TrackObservation> observations = simulate({});
+  std::vector<UndistortedObservation> observations = simulate({});
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (observations[i].track % 3 == 0) observations[i].pixel *= 1e6;
     if (observations[i].t > 2.0) observations[i].pixel = Vector2(120, 90);
@@ -306,11 +307,10 @@ TEST_CASE("on the real tracks of poster_translation batches of 50 and 100 ms sta
   if (!file) return;
   const Camera camera = read_calib(*testing::data_file("poster_translation/calib.txt"), 240, 180);
   const PoseTrajectory truth = read_tum(*testing::data_file("poster_translation/groundtruth.txt"));
-  std::vector<TrackObservation> observations;
-  for (TrackObservation z : read_tracks(*file, 240, 180).observations) {
+  std::vector<UndistortedObservation> observations;
+  for (const TrackObservation& z : read_tracks(*file, 240, 180).observations) {
     if (z.t > 3.05) break;
-    z.pixel = camera.undistort(z.pixel).value();
-    observations.push_back(z);
+    observations.push_back(undistort(z, camera).value());
   }
   for (const double duration : {0.05, 0.1}) {
     Options options;

@@ -31,8 +31,8 @@ GpMap::GpMap(const Options& options, const BackEndContext& context)
       monitor_(context.patience),
       information_share_(RobustLoss(options.loss, options.loss_width).information_share()) {}
 
-void GpMap::advance(const TrackBatch& batch) {
-  for (const TrackObservation& z : batch.observations) placement_.observe(z);
+void GpMap::advance(const UndistortedBatch& batch) {
+  for (const UndistortedObservation& z : batch.observations) placement_.observe(z);
   tracks_.receive(batch);
   until_ = batch.until;
   while (const std::optional<double> next = placement_.next(until_)) {
@@ -76,7 +76,8 @@ void GpMap::step(double t) {
 }
 
 void GpMap::take_observations(double t) {
-  tracks_.advance_to(t, [this](const TrackObservation& z) { map_->reassociation.observe(map_->estimate, tracks_, z); });
+  tracks_.advance_to(
+      t, [this](const UndistortedObservation& z) { map_->reassociation.observe(map_->estimate, tracks_, z); });
 }
 
 bool GpMap::initialise(double t) {
@@ -188,7 +189,7 @@ void GpMap::predict_next_state() {
   constexpr double kLargestSpread = 2.0;
   const NoiseLearner& learnt = map_->estimate.noise;
   const double noise = std::min(kLargestSpread * learnt.scale(), learnt.scale_of_means()) * options_.sigma_scale;
-  placement_.predict([this, noise, newest = graph().states.back()](const TrackObservation& z) {
+  placement_.predict([this, noise, newest = graph().states.back()](const UndistortedObservation& z) {
     std::optional<double> deviation;
     const TrackTable::Track* const track = tracks_.find(z.track);
     if (track == nullptr || track->role != TrackTable::Role::landmark || track->mismatched) return deviation;
@@ -258,9 +259,8 @@ void GpMap::validate_map() {
   }
 }
 
-Feedback GpMap::feedback(const FeedbackNeeds& needs) {
-  Feedback feedback;
-  feedback.t = until_;
+BackEndFeedback GpMap::feedback(const FeedbackNeeds& needs) {
+  BackEndFeedback feedback;
   if (std::exchange(reinitialised_, false)) return feedback;  // no map, even if there is a new one already
   feedback.state = monitor_.state();
   if (!map_) return feedback;

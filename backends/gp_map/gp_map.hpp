@@ -28,8 +28,8 @@ class GpMap : public BackEnd {
 
   GpMap(const Options& options, const BackEndContext& context);
 
-  void advance(const TrackBatch& batch) override;
-  Feedback feedback(const FeedbackNeeds& needs) override;
+  void advance(const UndistortedBatch& batch) override;
+  BackEndFeedback feedback(const FeedbackNeeds& needs) override;
   void finish() override;
 
   Status status() const override { return monitor_.status(); }

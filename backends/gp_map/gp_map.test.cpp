@@ -215,7 +215,7 @@ TEST_CASE("Empty data, one track, and two observations do not crash") {
   CHECK_FALSE(empty.pose(0.5));
 
   GpMap one({}, {});
-  std::vector<TrackObservation> track;
+  std::vector<UndistortedObservation> track;
   for (int i = 0; i < 100; ++i) track.push_back({0, 0.01 * i, {100.0 + i, 90.0}, 1.0});
   one.advance({track, {}, 1.0});
   one.finish();
@@ -313,14 +313,14 @@ TEST_CASE("With a lag, memory grows by the results alone", "[long]") {
     BackEndContext context;
     context.camera = scene.camera();
     GpMap backend(read_options<Options>(parse_json(options), "backend"), context);
-    TrackPlayer player(scene.observations());
+    TrackPlayer player = scene.player();
     TrackBatch batch;
     double t = 0.0;
     const auto bytes_at = [&](double until) {  // the minimum of the last second: some memory is temporary
       std::size_t least = std::numeric_limits<std::size_t>::max();
       for (; t < until; t += 0.01) {
         player.advance({t}, batch);
-        backend.advance(batch);
+        backend.advance(scene.undistorted(batch));
         if (t > until - 1.0) least = std::min(least, mallinfo2().uordblks);
       }
       return static_cast<double>(least);

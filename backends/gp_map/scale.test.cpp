@@ -83,8 +83,8 @@ TEST_CASE("When most landmarks of the scale anchor turn out to be outliers, othe
   const TrackedScene scene(6.0,
                            R"({"motion": {"max_frequency": 0.3}, "tracks": {"lifetime": [7.0, 8.0], "alive": 65}})");
   constexpr TrackId kFirst = 25;
-  std::vector<TrackObservation> observations;
-  for (TrackObservation z : scene.observations()) {
+  std::vector<UndistortedObservation> observations;
+  for (UndistortedObservation z : scene.observations()) {
     if (z.track >= kFirst && z.t < 0.6) continue;
     const double angle = static_cast<double>(z.track);
     if (z.track < kFirst && z.t > 0.9 + 0.005 * angle) z.pixel += 100.0 * Vector2(std::cos(angle), std::sin(angle));

@@ -7,7 +7,7 @@ namespace evbench::gp_map {
 
 using namespace smoother;
 
-inline Observation to_observation(const TrackObservation& z, double sigma_scale) {
+inline Observation to_observation(const UndistortedObservation& z, double sigma_scale) {
   return {z.t, z.pixel, z.noise.scaled(sigma_scale).whitening()};
 }
 

@@ -7,14 +7,14 @@
 
 namespace evbench::gp_map {
 
-void TrackTable::receive(const TrackBatch& batch) {
+void TrackTable::receive(const UndistortedBatch& batch) {
   pending_.insert(pending_.end(), batch.observations.begin(), batch.observations.end());
   ending_.insert(ending_.end(), batch.ended.begin(), batch.ended.end());
   ended_landmarks_.clear();
 }
 
-void TrackTable::advance_to(double t, const std::function<void(const TrackObservation&)>& association) {
-  const auto later = std::ranges::upper_bound(pending_, t, {}, &TrackObservation::t);
+void TrackTable::advance_to(double t, const std::function<void(const UndistortedObservation&)>& association) {
+  const auto later = std::ranges::upper_bound(pending_, t, {}, &UndistortedObservation::t);
   const auto ending_later = std::ranges::upper_bound(ending_, t, {}, &TrackEnd::t);
   const auto end = [&](const TrackEnd& ended) {
     const auto track = tracks_.find(ended.track);
@@ -24,12 +24,13 @@ void TrackTable::advance_to(double t, const std::function<void(const TrackObserv
   };
   in_time_order(
       std::span(pending_.begin(), later), std::span(ending_.begin(), ending_later),
-      [&](const TrackObservation& z) { take(z, association); }, end);
+      [&](const UndistortedObservation& z) { take(z, association); }, end);
   pending_.erase(pending_.begin(), later);
   ending_.erase(ending_.begin(), ending_later);
 }
 
-void TrackTable::take(const TrackObservation& z, const std::function<void(const TrackObservation&)>& association) {
+void TrackTable::take(const UndistortedObservation& z,
+                      const std::function<void(const UndistortedObservation&)>& association) {
   Track& track = tracks_[z.track];
   if (track.mismatched) return;
   live_.insert(z.track);

@@ -46,10 +46,10 @@ class TrackTable {
   // Observations.
 
   /// Keeps a batch until advance_to().
-  void receive(const TrackBatch& batch);
+  void receive(const UndistortedBatch& batch);
   /// Takes the observations up to t and no later ones: the estimate at a time depends on data until then. `association`
   /// is called before an observation of a landmark's track counts; it may give the track another role.
-  void advance_to(double t, const std::function<void(const TrackObservation&)>& association);
+  void advance_to(double t, const std::function<void(const UndistortedObservation&)>& association);
   /// New observations of landmarks, once.
   std::vector<std::pair<int, Observation>> take_observations() { return std::exchange(new_observations_, {}); }
   /// Observations of the waiting tracks.
@@ -110,15 +110,15 @@ class TrackTable {
   void restart();
 
  private:
-  void take(const TrackObservation& z, const std::function<void(const TrackObservation&)>& association);
+  void take(const UndistortedObservation& z, const std::function<void(const UndistortedObservation&)>& association);
 
   double sigma_scale_;
   std::map<TrackId, Track> tracks_;
   std::vector<TrackId> tracks_of_landmarks_;  ///< by landmark; a re-acquired track may have several
   std::set<TrackId> live_;
   TrackBuffer waiting_, remembered_;
-  std::vector<TrackObservation> pending_;  ///< later than the newest state
-  std::vector<TrackEnd> ending_;           ///< likewise
+  std::vector<UndistortedObservation> pending_;  ///< later than the newest state
+  std::vector<TrackEnd> ending_;                 ///< likewise
   std::vector<std::pair<int, Observation>> new_observations_;
   std::map<TrackId, Reappearance> reappeared_;
   std::vector<TrackId> outliers_, ended_landmarks_;

@@ -5,7 +5,7 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr auto kNothing = [](const TrackObservation&) {};
+constexpr auto kNothing = [](const UndistortedObservation&) {};
 
 void observe(TrackTable& tracks, TrackId id, double t) {
   tracks.receive({{{id, t, {10.0 + t, 20.0}, 0.5}}, {}, t});
@@ -22,7 +22,7 @@ TEST_CASE("Observations wait until their time, and those of a landmark's track a
   CHECK(tracks.take_observations().empty());
   tracks.become_landmark(7, 0);
   int asked = 0;
-  tracks.advance_to(0.3, [&](const TrackObservation& z) { asked += z.track == 7; });
+  tracks.advance_to(0.3, [&](const UndistortedObservation& z) { asked += z.track == 7; });
   const auto taken = tracks.take_observations();
   REQUIRE(taken.size() == 1);
   CHECK(taken.front().first == 0);

@@ -38,7 +38,7 @@ ProcessBackEnd::ProcessBackEnd(const Options& options, const BackEndContext& con
   context_.log("back-end process: " + dialogue_.name());
 }
 
-void ProcessBackEnd::advance(const TrackBatch& batch) {
+void ProcessBackEnd::advance(const UndistortedBatch& batch) {
   const auto start = std::chrono::steady_clock::now();
   Line line;
   line.push_back('{');
@@ -49,7 +49,6 @@ void ProcessBackEnd::advance(const TrackBatch& batch) {
     take_state(answer, batch.until);
     take_published(answer, batch.until);
     take_newest(answer, batch.until);
-    feedback_.t = batch.until;
   });
   UpdateRecord record;
   record.t = batch.until;
@@ -121,8 +120,8 @@ void ProcessBackEnd::take_newest(const Json& answer, double until) {
   }
 }
 
-Feedback ProcessBackEnd::feedback(const FeedbackNeeds& needs) {
-  Feedback result = feedback_;
+BackEndFeedback ProcessBackEnd::feedback(const FeedbackNeeds& needs) {
+  BackEndFeedback result = feedback_;
   feedback_.outliers.clear();
   if (!needs.covariance) result.covariance.reset();
   if (!needs.expected) result.expected.clear();

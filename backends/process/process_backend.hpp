@@ -18,8 +18,8 @@ class ProcessBackEnd : public BackEnd {
 
   ProcessBackEnd(const Options& options, const BackEndContext& context);
 
-  void advance(const TrackBatch& batch) override;
-  Feedback feedback(const FeedbackNeeds& needs) override;
+  void advance(const UndistortedBatch& batch) override;
+  BackEndFeedback feedback(const FeedbackNeeds& needs) override;
   void finish() override;
 
   Status status() const override { return final_status_.value_or(monitor_.status()); }
@@ -39,7 +39,7 @@ class ProcessBackEnd : public BackEnd {
   BackEndContext context_;
   Dialogue dialogue_;
   TrackingMonitor monitor_;
-  Feedback feedback_;  ///< at the end of the last batch; outliers since the last call of feedback()
+  BackEndFeedback feedback_;  ///< at the end of the last batch; outliers since the last call of feedback()
   std::optional<Status> final_status_;
   PoseTrajectory trajectory_;
   std::vector<Landmark> map_;

@@ -135,8 +135,7 @@ TEST_CASE("Feedback of a back-end process has outliers since the last one, and a
   Session session(kStraight);
   session.backend->advance({{}, {}, 0.5});
   session.backend->advance({{{3, 0.6, {1, 1}, 1.0}}, {}, 1.0});
-  const Feedback feedback = session.backend->feedback({true, true, true});
-  CHECK(feedback.t == 1.0);
+  const BackEndFeedback feedback = session.backend->feedback({true, true, true});
   CHECK(feedback.state == TrackingState::tracking);
   CHECK(feedback.outliers == std::vector<TrackId>{0, 1});
   REQUIRE(feedback.newest);
@@ -332,7 +331,7 @@ for line in sys.stdin:
   print('{"state":"tracking"}', flush=True)
 say({"trajectory": [pose(0, 0)]})
 )");
-  TrackBatch batch;
+  UndistortedBatch batch;
   double seconds = 0.0;
   constexpr int kExchanges = 500;
   for (int i = 1; i <= kExchanges; ++i) {

@@ -31,11 +31,11 @@ void RotationAveraging::Options::declare(OptionSet& set) {
 RotationAveraging::RotationAveraging(const Options& options, const BackEndContext& context)
     : options_(options), context_(context), monitor_(context.patience) {}
 
-void RotationAveraging::advance(const TrackBatch& batch) {
+void RotationAveraging::advance(const UndistortedBatch& batch) {
   const auto begin = std::chrono::steady_clock::now();
   if (monitor_.lost()) return;
   in_time_order(
-      batch.observations, batch.ended, [&](const TrackObservation& z) { take(z); },
+      batch.observations, batch.ended, [&](const UndistortedObservation& z) { take(z); },
       [&](const TrackEnd& ended) { last_.erase(ended.track); });
   until_ = batch.until;
   while (start_ && !monitor_.lost() && time_of(rotations_.size()) + options_.longest_gap <= until_) {
@@ -55,11 +55,11 @@ void RotationAveraging::advance(const TrackBatch& batch) {
 }
 
 /// Interpolates the directions at the samples between the track's last observation and this one.
-void RotationAveraging::take(const TrackObservation& z) {
+void RotationAveraging::take(const UndistortedObservation& z) {
   if (!start_) start_ = z.t;
   const auto [found, fresh] = last_.try_emplace(z.track, z);
   if (fresh) return;
-  const TrackObservation before = std::exchange(found->second, z);
+  const UndistortedObservation before = std::exchange(found->second, z);
   if (!(z.t > before.t) || z.t - before.t > options_.longest_gap) return;
   const auto next = [&](double t) {
     return static_cast<std::size_t>(std::max(0.0, std::ceil((t - *start_) / options_.interval)));
@@ -120,9 +120,8 @@ void RotationAveraging::close_sample() {
   }
 }
 
-Feedback RotationAveraging::feedback(const FeedbackNeeds&) {
-  Feedback result;
-  result.t = until_;
+BackEndFeedback RotationAveraging::feedback(const FeedbackNeeds&) {
+  BackEndFeedback result;
   result.state = monitor_.state();
   if (rotations_.size() < 2) return result;
   const std::size_t k = rotations_.size() - 1;

@@ -30,8 +30,8 @@ class RotationAveraging : public BackEnd {
 
   RotationAveraging(const Options& options, const BackEndContext& context);
 
-  void advance(const TrackBatch& batch) override;
-  Feedback feedback(const FeedbackNeeds& needs) override;
+  void advance(const UndistortedBatch& batch) override;
+  BackEndFeedback feedback(const FeedbackNeeds& needs) override;
   void finish() override;
   Status status() const override { return monitor_.status(); }
   PoseTrajectory trajectory() const override;
@@ -43,18 +43,18 @@ class RotationAveraging : public BackEnd {
     double t;  ///< [s]
     std::map<TrackId, Vector3> directions = {};
   };
-  void take(const TrackObservation& z);
+  void take(const UndistortedObservation& z);
   void close_sample();
   double time_of(std::size_t sample) const { return *start_ + options_.interval * static_cast<double>(sample); }
 
   Options options_;
   BackEndContext context_;
   TrackingMonitor monitor_;
-  std::optional<double> start_;                ///< [s] of the first sample
-  std::map<TrackId, TrackObservation> last_;   ///< observation of each track
-  std::deque<Sample> samples_;                 ///< as far back as pairs reach, and those that are not closed
-  std::size_t first_ = 0;                      ///< index of the first one in samples_
-  std::vector<Eigen::Quaterniond> rotations_;  ///< of closed samples: R_world_camera
+  std::optional<double> start_;                     ///< [s] of the first sample
+  std::map<TrackId, UndistortedObservation> last_;  ///< observation of each track
+  std::deque<Sample> samples_;                      ///< as far back as pairs reach, and those that are not closed
+  std::size_t first_ = 0;                           ///< index of the first one in samples_
+  std::vector<Eigen::Quaterniond> rotations_;       ///< of closed samples: R_world_camera
   std::vector<RotationEdge> edges_;
   double until_ = 0.0;  ///< [s] end of the last batch
   std::vector<UpdateRecord> updates_;

@@ -17,9 +17,9 @@ Eigen::Quaterniond turning(double t) { return so3::exp({0.4 * std::sin(1.3 * t),
 const PinholeCamera kCamera{200.0, 200.0, 119.5, 89.5};
 
 /// Far points seen by a rotating camera, each at its own times; `wrong` of every ten drift.
-std::vector<TrackObservation> observations(double duration, double noise, int wrong) {
+std::vector<UndistortedObservation> observations(double duration, double noise, int wrong) {
   Random random(1);
-  std::vector<TrackObservation> result;
+  std::vector<UndistortedObservation> result;
   for (TrackId track = 0; track < 400; ++track) {
     const Vector3 point = random_vector(random, 1.0).normalized();
     const Vector2 off = track % 10 < wrong ? random.uniform2({-20, -20}, {20, 20}) : Vector2(0, 0);
@@ -31,17 +31,17 @@ std::vector<TrackObservation> observations(double duration, double noise, int wr
       result.push_back({track, t, pixel + t * off + random.normal2() * noise, 0.5});
     }
   }
-  std::ranges::stable_sort(result, {}, &TrackObservation::t);
+  std::ranges::stable_sort(result, {}, &UndistortedObservation::t);
   return result;
 }
 
-RotationAveraging run(const std::vector<TrackObservation>& all, double duration) {
+RotationAveraging run(const std::vector<UndistortedObservation>& all, double duration) {
   BackEndContext context;
   context.camera = kCamera;
   RotationAveraging backend({}, context);
   std::size_t next = 0;
   for (double t = 0.05; t < duration + 0.01; t += 0.05) {
-    TrackBatch batch;
+    UndistortedBatch batch;
     batch.until = t;
     for (; next < all.size() && all[next].t <= t; ++next) batch.observations.push_back(all[next]);
     backend.advance(batch);
@@ -111,8 +111,8 @@ TEST_CASE("A rotating camera is followed with exact tracks, and with noise and o
 
 TEST_CASE("Without tracks there is no rotation, and when they end tracking is lost") {
   CHECK(run({}, 1.0).status().state == RunState::failed);
-  std::vector<TrackObservation> early = observations(4.0, 0.0, 0);
-  std::erase_if(early, [](const TrackObservation& z) { return z.t > 1.0; });
+  std::vector<UndistortedObservation> early = observations(4.0, 0.0, 0);
+  std::erase_if(early, [](const UndistortedObservation& z) { return z.t > 1.0; });
   const RotationAveraging lost = run(early, 4.0);
   CHECK(lost.status().state == RunState::lost);
   CHECK(lost.trajectory().end() > 0.9);

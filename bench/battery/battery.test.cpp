@@ -39,13 +39,13 @@ class Careless : public BackEnd {
   };
   Careless(const Options&, const BackEndContext& context) : context_(context) {}
 
-  void advance(const TrackBatch& batch) override {
+  void advance(const UndistortedBatch& batch) override {
     const double x = static_cast<double>(++advances_);
     poses_.push_back({batch.until, {Eigen::Quaterniond::Identity(), {x, 0, 0}}});
     context_.publish({poses_.back()});
   }
-  Feedback feedback(const FeedbackNeeds&) override {
-    Feedback feedback;
+  BackEndFeedback feedback(const FeedbackNeeds&) override {
+    BackEndFeedback feedback;
     feedback.newest = ControlState{poses_.back().t + 1.0, poses_.back().T, Vector6::Zero()};
     return feedback;
   }

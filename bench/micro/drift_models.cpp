@@ -37,6 +37,7 @@
 #include "bench/micro/track_noise.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/plugin/track_player.hpp"
+#include "core/plugin/undistort.hpp"
 #include "core/simulation/track_wander.hpp"
 #include "core/support/error.hpp"
 #include "core/support/median.hpp"
@@ -61,7 +62,7 @@ struct Arguments {
   bool true_noise = false;
 };
 
-/// A front-end's tracks without feedback, undistorted.
+/// A front-end's tracks without feedback.
 std::vector<TrackObservation> tracks_of(const Job& job, const Source& source, const Plugins& plugins) {
   const auto& entry = plugins.of<FrontEnd>().find(job.frontend.type, job.frontend.place);
   const auto frontend = entry.make(job.frontend.options, {source, job.seed, job.folder, job.frontend.place});
@@ -69,12 +70,7 @@ std::vector<TrackObservation> tracks_of(const Job& job, const Source& source, co
   TrackBatch batch;
   for (bool more = true; more;) {
     more = frontend->advance({source.time_range().to}, batch);
-    for (TrackObservation z : batch.observations) {
-      const auto pixel = source.camera().undistort(z.pixel);
-      if (!pixel) continue;
-      z.pixel = *pixel;
-      result.push_back(z);
-    }
+    result.insert(result.end(), batch.observations.begin(), batch.observations.end());
   }
   return result;
 }
@@ -97,7 +93,7 @@ FactorGraph final_graph(const Job& job, const Camera& camera, const std::vector<
   double t = observations.front().t;
   for (bool more = true; more; t += kExchange) {
     more = player.advance({t}, batch);
-    backend->advance(batch);
+    backend->advance(undistort(batch, camera));
   }
   backend->finish();
   if (backend->trajectory().empty()) {

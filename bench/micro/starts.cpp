@@ -21,6 +21,7 @@
 
 #include "backends/gp_map/gp_map.hpp"
 #include "core/plugin/track_player.hpp"
+#include "core/plugin/undistort.hpp"
 #include "core/simulation/track_simulator.hpp"
 #include "core/support/index.hpp"
 #include "core/support/median.hpp"
@@ -155,7 +156,7 @@ Start start(const Beginning& beginning, std::uint64_t seed) {
   bool found = false;
   for (double t = kExchange; t < kDuration; t += kExchange) {
     player.advance({t}, batch);
-    backend.advance(batch);
+    backend.advance(undistort(batch, beginning.camera));
     if (!found && !backend.trajectory().empty()) {
       found = true;
       result.seconds = backend.trajectory().end() - begin;

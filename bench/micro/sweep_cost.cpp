@@ -24,8 +24,8 @@ class Nothing : public BackEnd {
     void declare(OptionSet&) {}
   };
   Nothing(const Options&, const BackEndContext&) {}
-  void advance(const TrackBatch&) override {}
-  Feedback feedback(const FeedbackNeeds&) override { return {}; }
+  void advance(const UndistortedBatch&) override {}
+  BackEndFeedback feedback(const FeedbackNeeds&) override { return {}; }
   void finish() override {}
   Status status() const override { return {RunState::failed, "no estimate is made", 0.0, {}}; }
   PoseTrajectory trajectory() const override { return {}; }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/geometry/in_view.hpp"
+#include "core/plugin/undistort.hpp"
 
 namespace evbench {
 namespace {
@@ -27,7 +28,7 @@ bool agree(const Similarity& a, const Similarity& b) {
 }
 
 /// Transforms the feedback to another world.
-void transform_feedback(Feedback& feedback, const Similarity& transform) {
+void transform_feedback(BackEndFeedback& feedback, const Similarity& transform) {
   if (feedback.newest) {
     feedback.newest->T = transform * feedback.newest->T;
     feedback.newest->velocity.tail<3>() *= transform.scale;
@@ -38,7 +39,7 @@ void transform_feedback(Feedback& feedback, const Similarity& transform) {
       feedback.covariance->middleCols<3>(translation) *= transform.scale;
     }
   }
-  for (ExpectedFeature& feature : feedback.expected) feature.position = transform * feature.position;
+  for (UndistortedFeature& feature : feedback.expected) feature.position = transform * feature.position;
 }
 
 }  // namespace
@@ -69,10 +70,11 @@ void BackEndRunner::start_estimator() {
   estimators_.push_back(std::move(estimator));
 }
 
-void BackEndRunner::take(TrackBatch batch) {
+void BackEndRunner::take(const TrackBatch& raw) {
   if (stationary_.rejected()) end_estimator(*stationary_.rejected());
-  observations_ += batch.observations.size();
-  undistort(batch);
+  observations_ += raw.observations.size();
+  UndistortedBatch batch = undistort(raw, camera_);
+  left_out_ += raw.observations.size() - batch.observations.size();
   stationary_.apply(batch);
   digest(batch);
   if (const Status status = estimators_.back()->status(); status.state == RunState::lost) {
@@ -155,12 +157,12 @@ void BackEndRunner::remember_landmarks() {
 }
 
 /// Adds the remembered landmarks that are in view, unless the back-end predicts them itself.
-void BackEndRunner::expect_remembered(Feedback& feedback) const {
+void BackEndRunner::expect_remembered(BackEndFeedback& feedback) const {
   constexpr double kSigma = 1.5;  // [px], of predictions from an aligned earlier map
   if (!feedback.newest) return;
   const SE3 T = extrapolate(*feedback.newest, until_ - feedback.newest->t).T.inverse();
   std::set<TrackId> predicted;
-  for (const ExpectedFeature& feature : feedback.expected) predicted.insert(feature.track);
+  for (const UndistortedFeature& feature : feedback.expected) predicted.insert(feature.track);
   for (const auto& [track, position] : remembered_) {
     const Vector3 seen = T * position;
     if (!(seen.z() > 0.0) || predicted.contains(track)) continue;
@@ -171,37 +173,29 @@ void BackEndRunner::expect_remembered(Feedback& feedback) const {
 }
 
 Feedback BackEndRunner::feedback(const FeedbackNeeds& needs) {
-  Feedback feedback = watch_.time([&] { return estimators_.back()->backend->feedback(needs); });
-  feedback.t = until_;
+  BackEndFeedback answer = watch_.time([&] { return estimators_.back()->backend->feedback(needs); });
   const Estimator& estimator = *estimators_.back();
-  feedback.world = estimator.world;
-  transform_feedback(feedback, estimator.to_world);
-  if (needs.expected) expect_remembered(feedback);
-  if (stationary_.is_stationary() && feedback.state == TrackingState::tracking)
-    feedback.state = TrackingState::stationary;
-  for (ExpectedFeature& feature : feedback.expected) {
+  transform_feedback(answer, estimator.to_world);
+  if (needs.expected) expect_remembered(answer);
+  if (stationary_.is_stationary() && answer.state == TrackingState::tracking) answer.state = TrackingState::stationary;
+  Feedback result;
+  result.t = until_;
+  result.world = estimator.world;
+  result.state = answer.state;
+  result.newest = answer.newest;
+  result.covariance = answer.covariance;
+  result.outliers = std::move(answer.outliers);
+  for (const UndistortedFeature& feature : answer.expected) {
     const Matrix2 J = camera_.distortion_jacobian(feature.pixel);
-    feature.covariance = J * feature.covariance * J.transpose();
-    feature.pixel = camera_.project(camera_.pinhole.ray(feature.pixel));
+    const Vector2 raw = camera_.project(camera_.pinhole.ray(feature.pixel));
+    if (!camera_.contains(raw)) continue;
+    result.expected.push_back({feature.track, feature.position, raw, J * feature.covariance * J.transpose()});
   }
-  std::erase_if(feedback.expected, [&](const ExpectedFeature& feature) { return !camera_.contains(feature.pixel); });
-  return feedback;
-}
-
-/// Replaces raw pixels and their noise by those of the ideal pinhole. Observations without one are dropped and counted.
-void BackEndRunner::undistort(TrackBatch& batch) {
-  if (camera_.distortion == DistortionModel::none) return;  // so that not even rounding changes an observation
-  left_out_ += std::erase_if(batch.observations, [&](TrackObservation& z) {
-    const std::optional<Vector2> pixel = camera_.undistort(z.pixel);
-    if (!pixel) return true;
-    z.pixel = *pixel;
-    z.noise = z.noise.mapped(camera_.distortion_jacobian(*pixel).inverse());
-    return false;
-  });
+  return result;
 }
 
 /// Hashes all of a batch at once: a call of the hash for each value would cost more than the rest of an exchange.
-void BackEndRunner::digest(const TrackBatch& batch) {
+void BackEndRunner::digest(const UndistortedBatch& batch) {
   struct Seen {
     TrackId track;
     double t, u, v, xx, xy, yy;
@@ -210,7 +204,7 @@ void BackEndRunner::digest(const TrackBatch& batch) {
     TrackId track;
     double t;
   };
-  for (const TrackObservation& z : batch.observations) {
+  for (const UndistortedObservation& z : batch.observations) {
     append_value(digested_, Seen{z.track, z.t, z.pixel.x(), z.pixel.y(), z.noise.xx(), z.noise.xy(), z.noise.yy()});
   }
   for (const TrackEnd& end : batch.ended) append_value(digested_, Ended{end.track, end.t});

@@ -24,7 +24,7 @@ class BackEndRunner {
                 const PipelineOptions& options);
 
   /// Updates the estimate up to the batch's end.
-  void take(TrackBatch batch);
+  void take(const TrackBatch& batch);
 
   /// Of the estimate at the last batch's end, raw pixels.
   Feedback feedback(const FeedbackNeeds& needs);
@@ -42,13 +42,12 @@ class BackEndRunner {
 
  private:
   void start_estimator();
-  void undistort(TrackBatch& batch);
-  void digest(const TrackBatch& batch);
+  void digest(const UndistortedBatch& batch);
   void end_estimator(const StationaryDetector::Rejected& stationary);
   void confirm_landmarks(const std::vector<TrackEnd>& ended);
   void relocalise();
   void remember_landmarks();
-  void expect_remembered(Feedback& feedback) const;
+  void expect_remembered(BackEndFeedback& feedback) const;
   void add_segments(double rate, RunResult& result);
   Status merged_status(const std::vector<bool>& has_segment) const;
 

@@ -82,8 +82,8 @@ class Mean : public BackEnd {
  public:
   explicit Mean(const BackEndContext& context) : context_(context), monitor_(context.patience) {}
 
-  void advance(const TrackBatch& batch) override {
-    for (const TrackObservation& z : batch.observations) {
+  void advance(const UndistortedBatch& batch) override {
+    for (const UndistortedObservation& z : batch.observations) {
       sum_ = 0.99 * sum_ + 0.01 * z.pixel;
       live_ = true;
     }
@@ -97,8 +97,8 @@ class Mean : public BackEnd {
     if (live_) monitor_.observe(until_, batch.until, seen ? Support::full : Support::none, "nothing is seen");
     until_ = batch.until;
   }
-  Feedback feedback(const FeedbackNeeds& needs) override {
-    Feedback result{until_, monitor_.state(), {}, {}, {}, {}};
+  BackEndFeedback feedback(const FeedbackNeeds& needs) override {
+    BackEndFeedback result{monitor_.state(), {}, {}, {}, {}};
     if (!poses_.empty()) result.newest = ControlState{poses_.back().t, poses_.back().T, Vector6::Zero()};
     if (needs.expected) result.expected.push_back({7, {0, 0, 1}, sum_, Matrix2::Identity()});
     return result;
@@ -211,11 +211,11 @@ TEST_CASE("The front-end's delay is added to the known_at that a back-end states
   class Exact : public BackEnd {
    public:
     explicit Exact(const BackEndContext& context) : mean_(quiet(context)), context_(context) {}
-    void advance(const TrackBatch& batch) override {
+    void advance(const UndistortedBatch& batch) override {
       mean_.advance(batch);
-      for (const TrackObservation& z : batch.observations) context_.publish({{z.t, {}}, z.t, {}});
+      for (const UndistortedObservation& z : batch.observations) context_.publish({{z.t, {}}, z.t, {}});
     }
-    Feedback feedback(const FeedbackNeeds& needs) override { return mean_.feedback(needs); }
+    BackEndFeedback feedback(const FeedbackNeeds& needs) override { return mean_.feedback(needs); }
     void finish() override { mean_.finish(); }
     Status status() const override { return mean_.status(); }
     PoseTrajectory trajectory() const override { return mean_.trajectory(); }
@@ -402,7 +402,7 @@ TEST_CASE("A track's end reaches the back-end although the batch's end has not a
   class CountsEnds : public Mean {
    public:
     CountsEnds(const BackEndContext& context, int& ends) : Mean(context), ends_(ends) {}
-    void advance(const TrackBatch& batch) override {
+    void advance(const UndistortedBatch& batch) override {
       ends_ += static_cast<int>(batch.ended.size());
       Mean::advance(batch);
     }
@@ -422,7 +422,7 @@ TEST_CASE("An error in the back-end ends a run in every mode") {
   class Throws : public Mean {
    public:
     using Mean::Mean;
-    void advance(const TrackBatch& batch) override {
+    void advance(const UndistortedBatch& batch) override {
       if (batch.until > 0.5) throw std::runtime_error("the back-end broke");
       Mean::advance(batch);
     }
@@ -442,7 +442,7 @@ TEST_CASE("Causal poses that are not finite, or whose known_at decreases, are an
    public:
     PublishesPose(const BackEndContext& context, CausalPose pose)
         : Mean(context), publish_(context.publish), pose_(pose) {}
-    void advance(const TrackBatch& batch) override {
+    void advance(const UndistortedBatch& batch) override {
       if (batch.until > 0.5) publish_({{batch.until, {}}});
       if (batch.until > 0.5) publish_(pose_);
     }
@@ -467,7 +467,7 @@ TEST_CASE("Poses published again for an older time are kept with their known_at,
   class Smooths : public Mean {
    public:
     explicit Smooths(const BackEndContext& context) : Mean(context), publish_(context.publish) {}
-    void advance(const TrackBatch& batch) override {
+    void advance(const UndistortedBatch& batch) override {
       const SE3 T;
       publish_({{batch.until - 0.005, T}, batch.until - 0.002});
       if (batch.until > 0.5) publish_({{batch.until - 0.205, T}});

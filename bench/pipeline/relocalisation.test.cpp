@@ -75,8 +75,8 @@ class Surveyor : public BackEnd {
   Surveyor(const BackEndContext& context, const Similarity& world)
       : context_(context), monitor_(context.patience), to_own_(world) {}
 
-  void advance(const TrackBatch& batch) override {
-    for (const TrackObservation& z : batch.observations) seen_.insert(z.track);
+  void advance(const UndistortedBatch& batch) override {
+    for (const UndistortedObservation& z : batch.observations) seen_.insert(z.track);
     if (!batch.observations.empty()) {
       newest_ = batch.observations.back().t;
       poses_.push_back({newest_, to_own_ * truth(newest_)});
@@ -87,8 +87,8 @@ class Surveyor : public BackEnd {
     if (!poses_.empty()) monitor_.observe(until_, batch.until, sees ? Support::full : Support::none, "nothing is seen");
     until_ = batch.until;
   }
-  Feedback feedback(const FeedbackNeeds&) override {
-    Feedback result{until_, monitor_.state(), {}, {}, {}, {}};
+  BackEndFeedback feedback(const FeedbackNeeds&) override {
+    BackEndFeedback result{monitor_.state(), {}, {}, {}, {}};
     if (poses_.empty()) return result;
     result.newest = ControlState{newest_, poses_.back().T, body_velocity()};
     result.covariance = Matrix12::Identity();

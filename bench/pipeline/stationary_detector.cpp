@@ -17,14 +17,14 @@ constexpr double kMemory = 1.0;           ///< [s] time constant with which the 
 
 }  // namespace
 
-void StationaryDetector::apply(TrackBatch& batch) {
+void StationaryDetector::apply(UndistortedBatch& batch) {
   if (rejected_)
     std::erase_if(periods_, [&](const StationaryPeriod& period) { return period.from == rejected_->period.from; });
   rejected_.reset();
   if (after_ == 0.0) return;
-  const std::vector<TrackObservation> seen = std::move(batch.observations);
+  const std::vector<UndistortedObservation> seen = std::move(batch.observations);
   batch.observations.clear();
-  const auto observe = [&](const TrackObservation& z) {
+  const auto observe = [&](const UndistortedObservation& z) {
     repeat_tracks(z.t, batch.observations);  // a period may also lie within a long batch
     batch.observations.push_back(z);
     on_observation(z);
@@ -37,7 +37,7 @@ void StationaryDetector::apply(TrackBatch& batch) {
   repeat_tracks(batch.until, batch.observations);
 }
 
-void StationaryDetector::on_observation(const TrackObservation& z) {
+void StationaryDetector::on_observation(const UndistortedObservation& z) {
   const double gap = z.t - last_;
   const auto known = live_.find(z.track);
   const bool jumped = known != live_.end() && (z.pixel - known->second.pixel).norm() > kStep;
@@ -80,7 +80,7 @@ void StationaryDetector::begin_period(double t) {
 }
 
 /// Repeats the tracks' last positions between the last observation and `until` if the camera is stationary there.
-void StationaryDetector::repeat_tracks(double until, std::vector<TrackObservation>& observations) {
+void StationaryDetector::repeat_tracks(double until, std::vector<UndistortedObservation>& observations) {
   if (live_.size() < kEnough) {
     is_stationary_ = false;
     return;

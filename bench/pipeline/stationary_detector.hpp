@@ -29,7 +29,7 @@ class StationaryDetector {
   explicit StationaryDetector(double after) : after_(after) {}
 
   /// Processes a batch (undistorted pixels) and adds the repeated observations of a stationary period.
-  void apply(TrackBatch& batch);
+  void apply(UndistortedBatch& batch);
 
   std::size_t tracks() const { return live_.size(); }  ///< number of live tracks
 
@@ -49,16 +49,16 @@ class StationaryDetector {
 
  private:
   void begin_period(double t);
-  void repeat_tracks(double until, std::vector<TrackObservation>& observations);
-  void on_observation(const TrackObservation& z);
+  void repeat_tracks(double until, std::vector<UndistortedObservation>& observations);
+  void on_observation(const UndistortedObservation& z);
   void on_end(const TrackEnd& ended);
   void check_period();
 
   double after_;
-  std::map<TrackId, TrackObservation> live_;  ///< the last observation of each track that has not ended
-  double last_ = 0.0;                         ///< [s] of the last observation of any track
-  double usual_interval_ = 0.0;               ///< [s], longest recent time between two observations
-  std::int64_t repetitions_ = 0;              ///< of the tracks since the last observation
+  std::map<TrackId, UndistortedObservation> live_;  ///< the last observation of each track that has not ended
+  double last_ = 0.0;                               ///< [s] of the last observation of any track
+  double usual_interval_ = 0.0;                     ///< [s], longest recent time between two observations
+  std::int64_t repetitions_ = 0;                    ///< of the tracks since the last observation
   bool is_stationary_ = false;
   std::vector<StationaryPeriod> periods_;
 

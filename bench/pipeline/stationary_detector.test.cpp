@@ -9,8 +9,8 @@ using namespace evbench;
 namespace {
 
 /// Ten tracks that move, each observed every 20 ms with a phase of its own, in batches of 10 ms.
-TrackBatch moving_batch(double until) {
-  TrackBatch batch;
+UndistortedBatch moving_batch(double until) {
+  UndistortedBatch batch;
   batch.until = until;
   for (TrackId track = 0; track < 10; ++track) {
     const double t = until - 0.009 + 0.0009 * static_cast<double>(track);
@@ -21,8 +21,8 @@ TrackBatch moving_batch(double until) {
   return batch;
 }
 
-TrackBatch empty_batch(double until) {
-  TrackBatch batch;
+UndistortedBatch empty_batch(double until) {
+  UndistortedBatch batch;
   batch.until = until;
   return batch;
 }
@@ -32,7 +32,7 @@ TrackBatch empty_batch(double until) {
 TEST_CASE("While the camera moves, no observations are added") {
   StationaryDetector detector(0.1);
   for (int i = 1; i <= 100; ++i) {
-    TrackBatch batch = moving_batch(0.01 * i);
+    UndistortedBatch batch = moving_batch(0.01 * i);
     const std::size_t seen = batch.observations.size();
     detector.apply(batch);
     CHECK(batch.observations.size() == seen);
@@ -43,13 +43,13 @@ TEST_CASE("While the camera moves, no observations are added") {
 
 TEST_CASE("When live tracks are not observed, their last positions are repeated until they move again") {
   StationaryDetector detector(0.1);
-  TrackBatch batch;
+  UndistortedBatch batch;
   for (int i = 1; i <= 100; ++i) detector.apply(batch = moving_batch(0.01 * i));
   std::size_t repeated = 0;
   double before = 1.0;
   for (int i = 101; i <= 300; ++i) {
     detector.apply(batch = empty_batch(0.01 * i));
-    for (const TrackObservation& z : batch.observations) {
+    for (const UndistortedObservation& z : batch.observations) {
       CHECK(z.t > before - 1e-12);
       CHECK(z.t <= batch.until);
       CHECK(z.pixel.x() == Approx(10.0 + 50.0).margin(1.5));
@@ -69,7 +69,7 @@ TEST_CASE("When live tracks are not observed, their last positions are repeated 
 
 TEST_CASE("Ended tracks are not repeated, and few tracks are no evidence of a stationary camera") {
   StationaryDetector detector(0.1);
-  TrackBatch batch;
+  UndistortedBatch batch;
   for (int i = 1; i <= 100; ++i) detector.apply(batch = moving_batch(0.01 * i));
   batch = empty_batch(1.005);
   for (TrackId track = 0; track < 5; ++track) batch.ended.push_back({track, 1.001});
@@ -84,7 +84,7 @@ TEST_CASE("Ended tracks are not repeated, and few tracks are no evidence of a st
 TEST_CASE("The time between the frames of a slow tracker is no stationary period") {
   StationaryDetector detector(0.1);
   for (int i = 1; i <= 500; ++i) {
-    TrackBatch batch = empty_batch(0.01 * i);
+    UndistortedBatch batch = empty_batch(0.01 * i);
     if (i % 25 == 0) {
       for (TrackId track = 0; track < 10; ++track)
         batch.observations.push_back({track, batch.until, {1.0 * i, 2.0}, 1});
@@ -96,11 +96,11 @@ TEST_CASE("The time between the frames of a slow tracker is no stationary period
 }
 
 TEST_CASE("In one long batch the same observations are added as in many short ones") {
-  TrackBatch whole;
+  UndistortedBatch whole;
   StationaryDetector once(0.1), often(0.1);
-  std::vector<TrackObservation> parts;
+  std::vector<UndistortedObservation> parts;
   for (int i = 1; i <= 300; ++i) {
-    TrackBatch batch = i <= 100 || i > 200 ? moving_batch(0.01 * i) : empty_batch(0.01 * i);
+    UndistortedBatch batch = i <= 100 || i > 200 ? moving_batch(0.01 * i) : empty_batch(0.01 * i);
     if (i == 151) batch.ended = {{0, 1.503}, {1, 1.504}, {2, 1.505}};
     whole.ended.insert(whole.ended.end(), batch.ended.begin(), batch.ended.end());
     whole.observations.insert(whole.observations.end(), batch.observations.begin(), batch.observations.end());
@@ -122,7 +122,7 @@ namespace {
 /// ten new ones are observed.
 StationaryDetector after_gap(TrackId ending, double ends_at, double seen_again_at) {
   StationaryDetector detector(0.1);
-  TrackBatch batch;
+  UndistortedBatch batch;
   for (int i = 1; i <= 100; ++i) detector.apply(batch = moving_batch(0.01 * i));
   for (int i = 101; i <= 600; ++i) {
     batch = empty_batch(0.01 * i);
@@ -150,7 +150,7 @@ TEST_CASE("A stationary period is rejected if most tracks end when observations 
   CHECK(detector.rejected()->surviving_tracks.size() == 4);  // when more than half have ended
   CHECK(detector.periods().size() == 1);
   StationaryDetector later = detector;
-  TrackBatch batch = moving_batch(3.1);
+  UndistortedBatch batch = moving_batch(3.1);
   later.apply(batch);
   CHECK(later.periods().empty());
   CHECK(after_gap(8, 2.9, 3.0).rejected());  // whichever comes first

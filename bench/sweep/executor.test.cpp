@@ -35,7 +35,7 @@ class Troublemaker : public BackEnd {
   };
   Troublemaker(const Options& options, const BackEndContext&) : options_(options) {}
 
-  void advance(const TrackBatch& batch) override {
+  void advance(const UndistortedBatch& batch) override {
     if (batch.observations.empty()) return;
     const bool was_here = std::filesystem::exists(options_.file);
     if (!options_.file.empty()) ::close(::open(options_.file.c_str(), O_CREAT | O_WRONLY, 0644));
@@ -51,7 +51,7 @@ class Troublemaker : public BackEnd {
     if (options_.what == "throw") throw std::runtime_error("no more");
     if (options_.what == "die" || (options_.what == "die once" && !was_here)) ::raise(SIGKILL);
   }
-  Feedback feedback(const FeedbackNeeds&) override { return {}; }
+  BackEndFeedback feedback(const FeedbackNeeds&) override { return {}; }
   void finish() override {}
   Status status() const override { return {RunState::failed, "no estimate is made", 0.0, {}}; }
   PoseTrajectory trajectory() const override { return {}; }

@@ -25,7 +25,8 @@ struct RunEvent {
   std::string text;  ///< for people, without the time
 };
 
-/// What a back-end gets in addition to its options.
+/// What a back-end gets in addition to its options. What happens leaves at once through its functions: causal poses,
+/// events, lines of the log. What is known is asked for by the queries of BackEnd, and nothing leaves by both.
 struct BackEndContext {
   PinholeCamera camera;    ///< of the undistorted pixels that it observes
   std::uint64_t seed = 0;  ///< of all random numbers that it draws
@@ -68,12 +69,12 @@ class BackEnd {
  public:
   virtual ~BackEnd() = default;
 
-  /// Processes a batch (undistorted pixels) and updates the estimate up to batch.until.
-  virtual void advance(const TrackBatch& batch) = 0;
+  /// Processes a batch and updates the estimate up to batch.until.
+  virtual void advance(const UndistortedBatch& batch) = 0;
 
   /// The current estimate at batch.until of the last batch. May be called after any advance, or never. By default there
   /// is nothing that a front-end could use.
-  virtual Feedback feedback(const FeedbackNeeds& /*needs*/) { return {}; }
+  virtual BackEndFeedback feedback(const FeedbackNeeds& /*needs*/) { return {}; }
 
   /// No more data: computes the final (smoothed) estimate.
   virtual void finish() = 0;

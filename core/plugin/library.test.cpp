@@ -22,8 +22,8 @@ class Own : public BackEnd {
     void declare(OptionSet&) {}
   };
   Own(const Options&, const BackEndContext&) {}
-  void advance(const TrackBatch&) override {}
-  Feedback feedback(const FeedbackNeeds&) override { return {}; }
+  void advance(const UndistortedBatch&) override {}
+  BackEndFeedback feedback(const FeedbackNeeds&) override { return {}; }
   void finish() override {}
   Status status() const override { return {}; }
   PoseTrajectory trajectory() const override { return {}; }

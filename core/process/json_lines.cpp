@@ -196,9 +196,9 @@ Matrix12 covariance(const Json& value) {
   return 0.5 * (result + result.transpose());
 }
 
-std::vector<ExpectedFeature> expected_features(const Json& value) {
+std::vector<UndistortedFeature> expected_features(const Json& value) {
   return each(value, "expected", [](const Json& item, const Place& place) {
-    ExpectedFeature feature;
+    UndistortedFeature feature;
     const std::vector<double> v = track_row(item, "track x y z u v Suu Suv Svv", feature.track, place);
     feature.position = {v[1], v[2], v[3]};
     feature.pixel = {v[4], v[5]};

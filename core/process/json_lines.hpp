@@ -39,7 +39,7 @@ void write_events(Line& line, std::span<const Event> events);
 
 /// Writes "until": ..., "observations": ..., "ended": ...; leaves out values that are not finite and returns their
 /// number.
-int write_batch(Line& line, const TrackBatch& batch);
+int write_batch(Line& line, const UndistortedBatch& batch);
 
 /// One feedback as an object.
 void write_feedback(Line& line, const Feedback& feedback);
@@ -87,8 +87,8 @@ MovingPose moving_pose(const Json& value, const Place& place);
 TrackingState tracking_state(const Json& value);
 RunState run_state(const Json& value);
 std::string name_of(TrackingState state);
-Matrix12 covariance(const Json& value);                             ///< 144 numbers, symmetric
-std::vector<ExpectedFeature> expected_features(const Json& value);  ///< [[track, x, y, z, u, v, Σuu, Σuv, Σvv]]
+Matrix12 covariance(const Json& value);                                ///< 144 numbers, symmetric
+std::vector<UndistortedFeature> expected_features(const Json& value);  ///< [[track, x, y, z, u, v, Σuu, Σuv, Σvv]]
 /// [[track, t, u, v, sigma]] in time order. `covariances`: [[xx, xy, yy]] of each, instead of sigma, or null.
 std::vector<TrackObservation> observations(const Json& value, const Json* covariances = nullptr);
 std::vector<TrackEnd> track_ends(const Json& value);          ///< [[track, t]], time order

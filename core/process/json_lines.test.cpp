@@ -31,7 +31,7 @@ std::vector<TrackObservation> rows(const Json& json) { return observations(json)
 TEST_CASE("Observations are read back as the numbers that were written") {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
-  TrackBatch batch;
+  UndistortedBatch batch;
   double t = 0.0;
   for (int i = 0; i < 1000; ++i) {
     t += std::exp(5.0 * normal(random) - 8.0);
@@ -62,7 +62,7 @@ TEST_CASE("Observations are read back as the numbers that were written") {
 }
 
 TEST_CASE("Covariances are written beside the observations where any has one, and read back exactly") {
-  TrackBatch batch;
+  UndistortedBatch batch;
   batch.until = 0.5;
   batch.observations = {{1, 0.1, {1.0, 2.0}, PixelNoise(0.5, -0.2, 0.3)}, {2, 0.2, {3.0, 4.0}, 0.7}};
   Line line;
@@ -85,7 +85,7 @@ TEST_CASE("Covariances are written beside the observations where any has one, an
 }
 
 TEST_CASE("Observations that are not finite are left out of a line and counted") {
-  TrackBatch batch;
+  UndistortedBatch batch;
   batch.observations = {{1, 0.1, {1, 2}, 1.0}, {2, 0.1, {NAN, 2}, 1.0}, {3, 0.1, {1, INFINITY}, 1.0}};
   batch.until = 0.5;
   Line line;
@@ -126,7 +126,7 @@ TEST_CASE("Feedback is read back as it was written") {
   CHECK((read.pose.T.q.coeffs() - newest_state.T.q.coeffs()).norm() < 1e-15);
   CHECK(read.velocity == newest_state.velocity);
   CHECK(covariance(message.at("covariance")) == *feedback.covariance);
-  const std::vector<ExpectedFeature> expected = expected_features(message.at("expected"));
+  const std::vector<UndistortedFeature> expected = expected_features(message.at("expected"));
   REQUIRE(expected.size() == 1);
   CHECK(expected[0].pixel == Vector2(10.5, 20.25));
   CHECK(dump_json(message.at("outliers")) == "[7,9]");

@@ -28,7 +28,9 @@ void put_numbers(Line& line, const double* values, Eigen::Index count) {
   for (Eigen::Index i = 0; i < count; ++i) put(line, "{}{}", i == 0 ? "" : ",", values[i]);
 }
 
-bool is_finite(const TrackObservation& z) { return std::isfinite(z.t) && z.pixel.allFinite() && z.noise.is_valid(); }
+bool is_finite(const UndistortedObservation& z) {
+  return std::isfinite(z.t) && z.pixel.allFinite() && z.noise.is_valid();
+}
 
 void put_newest(Line& line, const ControlState& state) {
   const Eigen::Quaterniond& q = state.T.q;
@@ -47,18 +49,19 @@ void write_events(Line& line, std::span<const Event> events) {
            [&](const Event& e) { put(line, "[{},{},{},{}]", static_cast<double>(e.t) / 1e6, e.x, e.y, e.on ? 1 : 0); });
 }
 
-int write_batch(Line& line, const TrackBatch& batch) {
-  std::vector<TrackObservation> finite;
+int write_batch(Line& line, const UndistortedBatch& batch) {
+  std::vector<UndistortedObservation> finite;
   finite.reserve(batch.observations.size());
   std::ranges::copy_if(batch.observations, std::back_inserter(finite), is_finite);
   put(line, "\"until\":{},\"observations\":", batch.until);
-  put_list(line, finite, [&](const TrackObservation& z) {
+  put_list(line, finite, [&](const UndistortedObservation& z) {
     put(line, "[{},{},{},{},{}]", z.track, z.t, z.pixel.x(), z.pixel.y(), z.noise.sigma());
   });
-  if (!std::ranges::all_of(finite, [](const TrackObservation& z) { return z.noise.is_isotropic(); })) {
+  if (!std::ranges::all_of(finite, [](const UndistortedObservation& z) { return z.noise.is_isotropic(); })) {
     put(line, ",\"covariances\":");
-    put_list(line, finite,
-             [&](const TrackObservation& z) { put(line, "[{},{},{}]", z.noise.xx(), z.noise.xy(), z.noise.yy()); });
+    put_list(line, finite, [&](const UndistortedObservation& z) {
+      put(line, "[{},{},{}]", z.noise.xx(), z.noise.xy(), z.noise.yy());
+    });
   }
   put(line, ",\"ended\":");
   put_list(line, batch.ended, [&](const TrackEnd& end) { put(line, "[{},{}]", end.track, end.t); });

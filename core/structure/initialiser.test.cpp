@@ -5,6 +5,7 @@
 #include "core/data/calib.hpp"
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
+#include "core/plugin/undistort.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "core/testing/point_scene.hpp"
@@ -22,7 +23,7 @@ TrackBuffer tracks_of(PointScene scene, const Motion& motion, double duration, d
   TrackBuffer buffer;
   TrackId id = 0;
   for (const Vector3& point : testing::scene_points(scene, 50, random)) {
-    std::vector<TrackObservation> track;
+    std::vector<UndistortedObservation> track;
     for (double t = random.uniform(0.0, 0.005); t <= duration; t += 0.005) {
       const Vector3 local = motion(t).inverse() * point;
       track.push_back({id, t, davis().project(local) + testing::noise(noise, random), 1.0});
@@ -85,9 +86,9 @@ TEST_CASE("a camera at rest or in pure rotation is never initialised") {
 
 TEST_CASE("the first view moves on when its tracks have ended") {
   TrackBuffer tracks = tracks_of(PointScene::volume, moving, 0.1, 0.0, 7);
-  std::vector<TrackObservation> later;
+  std::vector<UndistortedObservation> later;
   for (TrackId id : tracks.ids()) {
-    for (TrackObservation z : tracks.observations(id)) later.push_back({id + 100, z.t + 0.5, z.pixel, z.noise});
+    for (UndistortedObservation z : tracks.observations(id)) later.push_back({id + 100, z.t + 0.5, z.pixel, z.noise});
   }
   tracks.add(later);
   Initialiser initialiser({}, davis());
@@ -105,7 +106,7 @@ TEST_CASE("the first view moves on when its tracks have ended") {
 TEST_CASE("tracks in view and tracks common to both views are counted separately in the reason") {
   TrackBuffer tracks;
   const auto see = [&](TrackId id, double from, double to) {
-    for (double t = from; t < to; t += 0.01) tracks.add(std::vector{TrackObservation{id, t, {50.0, 50.0}, 1.0}});
+    for (double t = from; t < to; t += 0.01) tracks.add(std::vector{UndistortedObservation{id, t, {50.0, 50.0}, 1.0}});
   };
   for (TrackId id = 0; id < 20; ++id) see(id, 0.0, id == 0 ? 1.0 : 0.5);
   for (TrackId id = 20; id < 40; ++id) see(id, 0.6, 1.0);
@@ -126,8 +127,8 @@ TEST_CASE("the real tracks of poster_translation start with the true direction o
   const Camera camera = read_calib(*testing::data_file("poster_translation/calib.txt"), 240, 180);
   const PoseTrajectory truth = read_tum(*testing::data_file("poster_translation/groundtruth.txt"));
   TrackBuffer tracks;
-  for (TrackObservation z : read_tracks(*tracks_file, 240, 180).observations) {
-    z.pixel = camera.undistort(z.pixel).value();
+  for (const TrackObservation& raw : read_tracks(*tracks_file, 240, 180).observations) {
+    const UndistortedObservation z = undistort(raw, camera).value();
     tracks.add(std::span(&z, 1));
   }
   Initialiser initialiser({}, camera.pinhole);

@@ -33,7 +33,7 @@ struct Sequence {
       for (double t = 0.0; t <= 1.0; t += 0.01) {
         Vector2 pixel = davis().project(moving(t).inverse() * point) + testing::noise(noise, random);
         if (id < outliers) pixel += 40.0 * t * Vector2(std::cos(id), std::sin(id));
-        const TrackObservation z{id, t, pixel, std::max(noise, 0.01)};
+        const UndistortedObservation z{id, t, pixel, std::max(noise, 0.01)};
         tracks.add({&z, 1});
       }
       guess.landmarks.push_back({id, point});
@@ -100,7 +100,7 @@ TEST_CASE("The uncertainty of the structure follows from the noise") {
 TEST_CASE("At most the requested number of tracks is used, those with most views first") {
   Sequence sequence(0.0);
   for (const double t : {0.0, 0.25, 0.5}) {
-    const TrackObservation z{99, t, {100.0, 100.0}, 1.0};
+    const UndistortedObservation z{99, t, {100.0, 100.0}, 1.0};
     sequence.tracks.add({&z, 1});
   }
   const TrackViews all = TrackViews::of(sequence.tracks, {0.0, 0.25, 0.5, 1.0}, 0.1, 100);

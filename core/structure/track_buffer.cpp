@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-constexpr auto by_time = [](const TrackObservation& a, const TrackObservation& b) { return a.t < b.t; };
+constexpr auto by_time = [](const UndistortedObservation& a, const UndistortedObservation& b) { return a.t < b.t; };
 
 /// A straight line through observations, with times relative to t.
 struct Line {
@@ -21,7 +21,7 @@ struct Line {
 };
 
 /// The weighted least-squares line; constant if all times are equal.
-Line line_through(std::span<const TrackObservation> observations, std::span<const double> weights, double t) {
+Line line_through(std::span<const UndistortedObservation> observations, std::span<const double> weights, double t) {
   double sum = 0.0, time = 0.0;
   Vector2 mean = Vector2::Zero();
   for (std::size_t i = 0; i < observations.size(); ++i) {
@@ -44,7 +44,7 @@ Line line_through(std::span<const TrackObservation> observations, std::span<cons
 }
 
 /// Robust line fit: iteratively reweighted by the distances from the line, against single jumps of a tracker.
-Vector2 robust_line_at(std::span<const TrackObservation> observations, double t) {
+Vector2 robust_line_at(std::span<const UndistortedObservation> observations, double t) {
   std::vector<double> weights(observations.size(), 1.0);
   Line line = line_through(observations, weights, t);
   if (observations.size() < 4) return line.at_t;
@@ -60,8 +60,8 @@ Vector2 robust_line_at(std::span<const TrackObservation> observations, double t)
   return line.at_t;
 }
 
-std::span<const TrackObservation> within(std::span<const TrackObservation> all, double from, double to) {
-  TrackObservation bound;
+std::span<const UndistortedObservation> within(std::span<const UndistortedObservation> all, double from, double to) {
+  UndistortedObservation bound;
   bound.t = from;
   const auto begin = std::lower_bound(all.begin(), all.end(), bound, by_time);
   bound.t = to;
@@ -70,11 +70,11 @@ std::span<const TrackObservation> within(std::span<const TrackObservation> all, 
 
 /// The two observations nearest to t, for slowly observed tracks. Empty if the gap between them is far longer than
 /// those around them.
-std::span<const TrackObservation> nearest_two(std::span<const TrackObservation> all, double t) {
+std::span<const UndistortedObservation> nearest_two(std::span<const UndistortedObservation> all, double t) {
   constexpr double kFarthest = 1.0;  // [s]
   constexpr double kUnusual = 4.0;
   constexpr std::ptrdiff_t kNeighbours = 2;
-  TrackObservation bound;
+  UndistortedObservation bound;
   bound.t = t;
   auto begin = std::lower_bound(all.begin(), all.end(), bound, by_time), end = begin;
   while (end - begin < 2) {
@@ -87,15 +87,15 @@ std::span<const TrackObservation> nearest_two(std::span<const TrackObservation> 
              last = end + std::min(kNeighbours, all.end() - end);
   const double between = (end - 1)->t - begin->t, rest = (last - 1)->t - first->t - between;
   const auto steps = static_cast<double>(last - first - 2);
-  return between * steps <= kUnusual * rest ? std::span(begin, end) : std::span<const TrackObservation>();
+  return between * steps <= kUnusual * rest ? std::span(begin, end) : std::span<const UndistortedObservation>();
 }
 
 }  // namespace
 
-void TrackBuffer::add(std::span<const TrackObservation> observations) {
-  for (const TrackObservation& z : observations) {
+void TrackBuffer::add(std::span<const UndistortedObservation> observations) {
+  for (const UndistortedObservation& z : observations) {
     if (removed(z.track) || !std::isfinite(z.t) || !z.pixel.allFinite()) continue;
-    std::vector<TrackObservation>& track = tracks_[z.track];
+    std::vector<UndistortedObservation>& track = tracks_[z.track];
     if (track.empty() || track.back().t <= z.t) {
       track.push_back(z);
     } else {
@@ -104,7 +104,7 @@ void TrackBuffer::add(std::span<const TrackObservation> observations) {
   }
 }
 
-std::span<const TrackObservation> TrackBuffer::observations(TrackId track) const {
+std::span<const UndistortedObservation> TrackBuffer::observations(TrackId track) const {
   const auto found = tracks_.find(track);
   if (found == tracks_.end()) return {};
   return found->second;
@@ -126,8 +126,8 @@ std::vector<TrackId> TrackBuffer::alive(double t, double margin) const {
 }
 
 std::optional<Vector2> TrackBuffer::position(TrackId track, double t, const PlaceWindow& window) const {
-  const std::span<const TrackObservation> all = observations(track);
-  std::span<const TrackObservation> near = within(all, t - 0.5 * window.length, t + 0.5 * window.length);
+  const std::span<const UndistortedObservation> all = observations(track);
+  std::span<const UndistortedObservation> near = within(all, t - 0.5 * window.length, t + 0.5 * window.length);
   double margin = 0.25 * window.length;
   if (window.or_nearest && near.size() < 2) {
     if (const auto pair = nearest_two(all, t); pair.size() == 2) {

@@ -24,10 +24,10 @@ struct PlaceWindow {
 class TrackBuffer {
  public:
   /// Adds observations in any order; those of a removed track, and those that are not finite, are ignored.
-  void add(std::span<const TrackObservation> observations);
+  void add(std::span<const UndistortedObservation> observations);
 
   /// Observations of a track in time order; empty for an unknown or removed track. Valid until the next add or remove.
-  std::span<const TrackObservation> observations(TrackId track) const;
+  std::span<const UndistortedObservation> observations(TrackId track) const;
 
   std::vector<TrackId> ids() const;  ///< ascending
   std::size_t size() const { return tracks_.size(); }
@@ -55,7 +55,7 @@ class TrackBuffer {
   bool removed(TrackId track) const { return removed_.contains(track); }
 
  private:
-  std::map<TrackId, std::vector<TrackObservation>> tracks_;
+  std::map<TrackId, std::vector<UndistortedObservation>> tracks_;
   std::set<TrackId> removed_;
 };
 

@@ -10,7 +10,7 @@ using namespace evbench;
 
 namespace {
 
-TrackObservation observation(TrackId id, double t, double x, double y) { return {id, t, {x, y}, 1.0}; }
+UndistortedObservation observation(TrackId id, double t, double x, double y) { return {id, t, {x, y}, 1.0}; }
 
 }  // namespace
 
@@ -58,7 +58,7 @@ TEST_CASE("a removed track has no observations and accepts none") {
 
 TEST_CASE("a track's position at a time is the line through its observations there") {
   TrackBuffer buffer;
-  std::vector<TrackObservation> observations;
+  std::vector<UndistortedObservation> observations;
   for (int i = 0; i < 40; ++i) {
     const double t = 0.01 * i;
     observations.push_back(observation(1, t, std::round(10.0 + 43.0 * t), std::round(80.0 - 21.0 * t)));
@@ -86,7 +86,7 @@ TEST_CASE("a single observation gives the position at its own time only") {
 
 TEST_CASE("a slow tracker's position at a time is the line through its nearest observations") {
   TrackBuffer buffer;
-  std::vector<TrackObservation> observations;
+  std::vector<UndistortedObservation> observations;
   const auto at = [](double t) { return Vector2(10.0 + 4.0 * t, 20.0 - 3.0 * t); };
   for (int i = 0; i < 10; ++i) observations.push_back(observation(1, 0.2 * i, at(0.2 * i).x(), at(0.2 * i).y()));
   for (const double t : {2.7, 2.9, 3.1}) observations.push_back(observation(1, t, 30, 30));  // after an unusual gap

@@ -45,7 +45,7 @@ Vector2 reprojection_error(const SE3& T, const Vector3& landmark, const Vector2&
 class ReprojectionCost : public ceres::SizedCostFunction<2, 7, 7, 7, 7, 3> {
  public:
   /// `segment` is prepared from the knots that are the parameters.
-  ReprojectionCost(const SplineSegment& segment, double u, const evbench::TrackObservation& z,
+  ReprojectionCost(const SplineSegment& segment, double u, const evbench::UndistortedObservation& z,
                    const evbench::PinholeCamera& camera)
       : segment_(segment), u_(u), pixel_(z.pixel), whitening_(z.noise.whitening()), camera_(camera) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
@@ -61,7 +61,7 @@ class ReprojectionCost : public ceres::SizedCostFunction<2, 7, 7, 7, 7, 3> {
 /// The same from a fixed pose.
 class HeldReprojectionCost : public ceres::SizedCostFunction<2, 3> {
  public:
-  HeldReprojectionCost(const SE3& T, const evbench::TrackObservation& z, const evbench::PinholeCamera& camera)
+  HeldReprojectionCost(const SE3& T, const evbench::UndistortedObservation& z, const evbench::PinholeCamera& camera)
       : T_(T), pixel_(z.pixel), whitening_(z.noise.whitening()), camera_(camera) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 

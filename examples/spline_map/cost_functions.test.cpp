@@ -70,7 +70,7 @@ TEST_CASE("Jacobians of the reprojection cost agree with central differences") {
     const double u = std::uniform_real_distribution(0.0, 1.0)(generator);
     const SplineSegment segment = testing::segment(knots);
     const Vector3 landmark = segment.pose(u) * Vector3(testing::random_vector(generator, 1.0) + Vector3(0, 0, 3));
-    const evbench::TrackObservation z{0, 0.0, {100.0, 80.0}, 0.7};
+    const evbench::UndistortedObservation z{0, 0.0, {100.0, 80.0}, 0.7};
     const ReprojectionCost cost(segment, u, z, camera);
     auto blocks = blocks_of(knots);
     blocks.push_back(landmark.data());

@@ -29,12 +29,12 @@ Spline straight_motion(const InitialGuess& guess, double start, double spacing) 
 }
 
 /// Observations from a time on, subsampled evenly if there are many: enough for the initial map.
-std::vector<evbench::TrackObservation> sample(std::span<const evbench::TrackObservation> all, double from) {
+std::vector<evbench::UndistortedObservation> sample(std::span<const evbench::UndistortedObservation> all, double from) {
   constexpr std::size_t kMost = 100;
-  const auto first = std::ranges::lower_bound(all, from, {}, &evbench::TrackObservation::t);
-  const std::span<const evbench::TrackObservation> usable(first, all.end());
+  const auto first = std::ranges::lower_bound(all, from, {}, &evbench::UndistortedObservation::t);
+  const std::span<const evbench::UndistortedObservation> usable(first, all.end());
   const std::size_t count = std::min(kMost, usable.size());
-  std::vector<evbench::TrackObservation> result;
+  std::vector<evbench::UndistortedObservation> result;
   for (std::size_t i = 0; i < count; ++i) result.push_back(usable[i * usable.size() / count]);
   return result;
 }

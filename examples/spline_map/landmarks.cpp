@@ -11,7 +11,7 @@ double mean_error(const MappedTrack& landmark, const Spline& spline, const evben
   double sum = 0.0;
   Spline::Place last;
   SplineSegment segment = spline.segment(0);
-  for (const evbench::TrackObservation& z : landmark.observations) {
+  for (const evbench::UndistortedObservation& z : landmark.observations) {
     const Spline::Place at = spline.place(z.t);
     if (at.segment != last.segment) segment = spline.segment(at.segment);
     last = at;
@@ -20,12 +20,12 @@ double mean_error(const MappedTrack& landmark, const Spline& spline, const evben
   return sum / static_cast<double>(landmark.observations.size());
 }
 
-evbench::Triangulation triangulate_track(std::span<const evbench::TrackObservation> observations, const Spline& spline,
-                                         const evbench::PinholeCamera& camera,
+evbench::Triangulation triangulate_track(std::span<const evbench::UndistortedObservation> observations,
+                                         const Spline& spline, const evbench::PinholeCamera& camera,
                                          const evbench::TriangulationOptions& options) {
   constexpr std::size_t kMost = 24;
-  const auto first = std::ranges::lower_bound(observations, spline.start(), {}, &evbench::TrackObservation::t);
-  const std::span<const evbench::TrackObservation> usable(first, observations.end());
+  const auto first = std::ranges::lower_bound(observations, spline.start(), {}, &evbench::UndistortedObservation::t);
+  const std::span<const evbench::UndistortedObservation> usable(first, observations.end());
   const std::size_t views = std::min(kMost, usable.size());
   std::vector<SE3> poses;
   std::vector<Vector2> pixels;

@@ -12,7 +12,7 @@ namespace spline_map {
 /// A track that is a landmark of the map. Observations are in time order, none before the spline's start.
 struct MappedTrack {
   Vector3 position = Vector3::Zero();  ///< world frame
-  std::vector<evbench::TrackObservation> observations;
+  std::vector<evbench::UndistortedObservation> observations;
 };
 
 /// Landmarks by track, in the order of the ids, so that iteration is deterministic.
@@ -22,8 +22,8 @@ using Landmarks = std::map<evbench::TrackId, MappedTrack>;
 double mean_error(const MappedTrack& landmark, const Spline& spline, const evbench::PinholeCamera& camera);
 
 /// Triangulates a track from the spline. Observations before its start are ignored, many observations are subsampled.
-evbench::Triangulation triangulate_track(std::span<const evbench::TrackObservation> observations, const Spline& spline,
-                                         const evbench::PinholeCamera& camera,
+evbench::Triangulation triangulate_track(std::span<const evbench::UndistortedObservation> observations,
+                                         const Spline& spline, const evbench::PinholeCamera& camera,
                                          const evbench::TriangulationOptions& options);
 
 }  // namespace spline_map

@@ -54,7 +54,7 @@ class Solve {
 
  private:
   double* knot(std::size_t k) { return spline_.knots()[k].values; }
-  void add_observation(const evbench::TrackObservation& z, double* landmark);
+  void add_observation(const evbench::UndistortedObservation& z, double* landmark);
 
   Spline& spline_;
   const evbench::PinholeCamera& camera_;
@@ -110,7 +110,7 @@ void Solve::add_gauge(const Gauge& gauge) {
   problem_.AddResidualBlock(baseline_.get(), nullptr, blocks);
 }
 
-void Solve::add_observation(const evbench::TrackObservation& z, double* landmark) {
+void Solve::add_observation(const evbench::UndistortedObservation& z, double* landmark) {
   const Spline::Place at = spline_.place(z.t);
   const std::size_t s = at.segment;
   ++report_.observations;
@@ -131,8 +131,9 @@ void Solve::add_landmarks(const Landmarks& landmarks) {
   }
   for (auto& [id, position] : positions_) {
     const auto& observations = landmarks.at(id).observations;
-    const auto first = std::ranges::lower_bound(observations, scope_.held_from, {}, &evbench::TrackObservation::t);
-    for (const evbench::TrackObservation& z : std::span(first, observations.end())) {
+    const auto first =
+        std::ranges::lower_bound(observations, scope_.held_from, {}, &evbench::UndistortedObservation::t);
+    for (const evbench::UndistortedObservation& z : std::span(first, observations.end())) {
       add_observation(z, position.data());
     }
   }

@@ -14,7 +14,7 @@ namespace spline_map {
 namespace {
 
 using evbench::TrackId;
-using evbench::TrackObservation;
+using evbench::UndistortedObservation;
 using Support = evbench::TrackingMonitor::Support;
 
 const evbench::Registration<evbench::BackEnd, SplineMap> registration(
@@ -33,8 +33,8 @@ SplineMap::SplineMap(const Options& options, const evbench::BackEndContext& cont
   FLAGS_minloglevel = google::GLOG_ERROR;  // Ceres' warnings are in its summaries, not for the console
 }
 
-void SplineMap::advance(const evbench::TrackBatch& batch) {
-  for (const TrackObservation& z : batch.observations) {
+void SplineMap::advance(const evbench::UndistortedBatch& batch) {
+  for (const UndistortedObservation& z : batch.observations) {
     if (!first_update_) first_update_ = z.t;
     pending_.push_back(z);
   }
@@ -71,7 +71,7 @@ void SplineMap::update(double t) {
 
 void SplineMap::take_observations(double t) {
   for (; !pending_.empty() && pending_.front().t <= t; pending_.pop_front()) {
-    const TrackObservation& z = pending_.front();
+    const UndistortedObservation& z = pending_.front();
     live_.insert(z.track);
     const auto landmark = landmarks_.find(z.track);
     if (landmark == landmarks_.end()) {
@@ -137,9 +137,9 @@ void SplineMap::add_landmarks(double t) {
 }
 
 /// The observations that the spline covers.
-std::vector<TrackObservation> SplineMap::observations_of(TrackId track) const {
+std::vector<UndistortedObservation> SplineMap::observations_of(TrackId track) const {
   const auto all = tracks_.observations(track);
-  return {std::ranges::lower_bound(all, spline_.start(), {}, &TrackObservation::t), all.end()};
+  return {std::ranges::lower_bound(all, spline_.start(), {}, &UndistortedObservation::t), all.end()};
 }
 
 void SplineMap::add_landmark(TrackId track, const Vector3& position) {
@@ -194,7 +194,7 @@ void SplineMap::lose() {
   newest_ = std::clamp(monitor_.status().time, spline_.start(), newest_);
   spline_.cut(newest_);
   for (auto& [track, landmark] : landmarks_) {
-    std::erase_if(landmark.observations, [&](const TrackObservation& z) { return z.t > newest_; });
+    std::erase_if(landmark.observations, [&](const UndistortedObservation& z) { return z.t > newest_; });
   }
 }
 
@@ -234,9 +234,8 @@ void SplineMap::solve_everything() {
                       report.iterations, report.cost});
 }
 
-evbench::Feedback SplineMap::feedback(const evbench::FeedbackNeeds& needs) {
-  evbench::Feedback result;
-  result.t = until_;
+evbench::BackEndFeedback SplineMap::feedback(const evbench::FeedbackNeeds& needs) {
+  evbench::BackEndFeedback result;
   result.state =
       monitor_.lost() || !mapped_ ? monitor_.state() : std::max(monitor_.state(), evbench::TrackingState::tracking);
   result.outliers.swap(new_outliers_);

@@ -24,8 +24,8 @@ class SplineMap : public evbench::BackEnd {
 
   SplineMap(const Options& options, const evbench::BackEndContext& context);
 
-  void advance(const evbench::TrackBatch& batch) override;
-  evbench::Feedback feedback(const evbench::FeedbackNeeds& needs) override;
+  void advance(const evbench::UndistortedBatch& batch) override;
+  evbench::BackEndFeedback feedback(const evbench::FeedbackNeeds& needs) override;
   void finish() override;
 
   evbench::Status status() const override { return monitor_.status(); }
@@ -41,7 +41,7 @@ class SplineMap : public evbench::BackEnd {
   void initialise(double t);
   SolveReport optimise(double t);
   void add_landmarks(double t);
-  std::vector<evbench::TrackObservation> observations_of(evbench::TrackId track) const;
+  std::vector<evbench::UndistortedObservation> observations_of(evbench::TrackId track) const;
   void add_landmark(evbench::TrackId track, const Vector3& position);
   void remove_outliers(double since);
   void watch(double from, double t);
@@ -56,11 +56,11 @@ class SplineMap : public evbench::BackEnd {
   InitialMapFinder initial_map_;
   evbench::TrackingMonitor monitor_;
 
-  std::deque<evbench::TrackObservation> pending_;  ///< later than the newest estimate
-  evbench::TrackBuffer tracks_;                    ///< tracks that are not landmarks (yet), and the ids of removed ones
-  std::map<evbench::TrackId, double> tried_at_;    ///< [s] last failed attempt to triangulate a track
-  std::deque<evbench::TrackEnd> ending_;           ///< later than the newest estimate
-  std::set<evbench::TrackId> live_;                ///< tracks that have begun and not ended
+  std::deque<evbench::UndistortedObservation> pending_;  ///< later than the newest estimate
+  evbench::TrackBuffer tracks_;                  ///< tracks that are not landmarks (yet), and the ids of removed ones
+  std::map<evbench::TrackId, double> tried_at_;  ///< [s] last failed attempt to triangulate a track
+  std::deque<evbench::TrackEnd> ending_;         ///< later than the newest estimate
+  std::set<evbench::TrackId> live_;              ///< tracks that have begun and not ended
   std::vector<evbench::TrackId> new_outliers_;
 
   bool mapped_ = false;  ///< there is a map: spline, gauge and landmarks are valid

@@ -8,7 +8,7 @@
 
 using namespace spline_map;
 using evbench::RunState;
-using evbench::TrackObservation;
+using evbench::UndistortedObservation;
 
 namespace {
 
@@ -21,11 +21,11 @@ SE3 circling(double t) {
 SE3 resting(double) { return {}; }
 
 /// 50 points, each observed at about 70 Hz at individual times, 0.5 px noise.
-std::vector<TrackObservation> observe(SE3 (*motion)(double), double duration) {
+std::vector<UndistortedObservation> observe(SE3 (*motion)(double), double duration) {
   std::mt19937_64 generator(9);
   std::normal_distribution<double> noise(0.0, 0.5);
   std::uniform_real_distribution<double> gap(0.007, 0.021);
-  std::vector<TrackObservation> result;
+  std::vector<UndistortedObservation> result;
   for (evbench::TrackId id = 0; id < 50; ++id) {
     const Vector3 point = testing::random_vector(generator, 0.8) + Vector3(0.0, 0.0, 2.5);
     for (double t = gap(generator); t < duration; t += gap(generator)) {
@@ -33,7 +33,7 @@ std::vector<TrackObservation> observe(SE3 (*motion)(double), double duration) {
       result.push_back({id, t, camera.project(motion(t).inverse() * point) + Vector2(x, y), 0.5});
     }
   }
-  std::ranges::stable_sort(result, {}, &TrackObservation::t);
+  std::ranges::stable_sort(result, {}, &UndistortedObservation::t);
   return result;
 }
 
@@ -43,7 +43,7 @@ struct Run {
 };
 
 /// Feeds the observations in exchanges of `chunk` seconds until `end`.
-Run run(const std::vector<TrackObservation>& observations, double end, double chunk = 0.01) {
+Run run(const std::vector<UndistortedObservation>& observations, double end, double chunk = 0.01) {
   Run result;
   evbench::BackEndContext context;
   context.camera = camera;
@@ -52,7 +52,7 @@ Run run(const std::vector<TrackObservation>& observations, double end, double ch
   result.backend = std::make_unique<SplineMap>(Options{}, context);
   auto next = observations.begin();
   for (double until = chunk; until < end + 0.5 * chunk; until += chunk) {
-    evbench::TrackBatch batch;
+    evbench::UndistortedBatch batch;
     batch.until = until;
     for (; next != observations.end() && next->t <= until; ++next) batch.observations.push_back(*next);
     result.backend->advance(batch);
@@ -100,9 +100,9 @@ TEST_CASE("The trajectory of a moving camera is estimated up to scale") {
 
 TEST_CASE("Without a map there is a reason: nothing observed, one track, a camera at rest") {
   const auto all = observe(circling, 1.5);
-  std::vector<TrackObservation> one;
-  std::ranges::copy_if(all, std::back_inserter(one), [](const TrackObservation& z) { return z.track == 0; });
-  for (const auto& observations : {std::vector<TrackObservation>{}, one, observe(resting, 1.5)}) {
+  std::vector<UndistortedObservation> one;
+  std::ranges::copy_if(all, std::back_inserter(one), [](const UndistortedObservation& z) { return z.track == 0; });
+  for (const auto& observations : {std::vector<UndistortedObservation>{}, one, observe(resting, 1.5)}) {
     const Run result = run(observations, 1.5);
     CHECK(result.backend->status().state == RunState::failed);
     CHECK_FALSE(result.backend->status().reason.empty());
@@ -112,11 +112,11 @@ TEST_CASE("Without a map there is a reason: nothing observed, one track, a camer
 
 TEST_CASE("A gap is reported as degraded, and the end of all observations as lost") {
   auto observations = observe(circling, 3.0);
-  std::erase_if(observations, [](const TrackObservation& z) { return z.t > 1.5 && z.t < 1.9; });
+  std::erase_if(observations, [](const UndistortedObservation& z) { return z.t > 1.5 && z.t < 1.9; });
   const Run gap = run(observations, 3.0);
   check_finite_and_ordered(gap);
   CHECK(gap.backend->status().state == RunState::degraded);
-  std::erase_if(observations, [](const TrackObservation& z) { return z.t > 1.5; });
+  std::erase_if(observations, [](const UndistortedObservation& z) { return z.t > 1.5; });
   const Run ended = run(observations, 3.0);
   check_finite_and_ordered(ended);
   CHECK(ended.backend->status().state == RunState::lost);

@@ -23,7 +23,7 @@
 ///     struct AtRest : BackEnd {
 ///       struct Options { void declare(OptionSet&) {} };
 ///       AtRest(const Options&, const BackEndContext&) {}
-///       void advance(const TrackBatch& batch) override { poses.push_back({batch.until, SE3()}); }
+///       void advance(const UndistortedBatch& batch) override { poses.push_back({batch.until, SE3()}); }
 ///       void finish() override {}
 ///       PoseTrajectory trajectory() const override { return PoseTrajectory(poses); }
 ///       std::vector<StampedPose> poses;
@@ -42,6 +42,7 @@
 #include "core/plugin/source.hpp"
 #include "core/plugin/track_player.hpp"
 #include "core/plugin/tracking_monitor.hpp"
+#include "core/plugin/undistort.hpp"
 #include "core/simulation/random.hpp"
 #include "core/structure/depth_reversal.hpp"
 #include "core/structure/initialiser.hpp"

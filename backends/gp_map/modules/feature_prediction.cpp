@@ -10,8 +10,8 @@
 
 namespace evbench::gp_map {
 
-std::vector<ExpectedFeature> FeaturePrediction::expected(Estimate& estimate, TrackTable& tracks, double t,
-                                                         double upcoming) {
+std::vector<UndistortedFeature> FeaturePrediction::expected(Estimate& estimate, TrackTable& tracks, double t,
+                                                            double upcoming) {
   constexpr double kNear = 1e-3;  // [units] before the camera: nearer points have no image
   // Computed while it is near the newest state: later this takes a long walk back.
   for (const TrackId id : tracks.take_ended()) {
@@ -26,7 +26,7 @@ std::vector<ExpectedFeature> FeaturePrediction::expected(Estimate& estimate, Tra
   Eigen::Matrix<double, 6, 12> J_pose;  // of the predicted pose's increment
   J_pose << se3::adjoint(motion.inverse()), dt * se3::right_jacobian(dt * newest.velocity);
   const Matrix6 drift = wnoa::process_covariance(std::abs(dt), graph.qc).topLeftCorner<6, 6>();
-  std::vector<ExpectedFeature> result;
+  std::vector<UndistortedFeature> result;
   for (const auto& [id, landmark] : nearly_in_view(estimate, tracks, t, upcoming)) {
     const bool ended = tracks.at(id).ended;
     if (ended && !estimate.kept_covariance(landmark)) continue;

@@ -15,7 +15,7 @@ class FeaturePrediction {
  public:
   /// All landmarks in view at time t, predicted with constant velocity. One whose track has ended counts as independent
   /// of the newest state. `upcoming`: latest time of the next state [s].
-  std::vector<ExpectedFeature> expected(Estimate& estimate, TrackTable& tracks, double t, double upcoming);
+  std::vector<UndistortedFeature> expected(Estimate& estimate, TrackTable& tracks, double t, double upcoming);
 
  private:
   const std::vector<std::pair<TrackId, int>>& nearly_in_view(const Estimate& estimate, const TrackTable& tracks,

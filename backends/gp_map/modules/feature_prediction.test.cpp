@@ -25,7 +25,7 @@ TEST_CASE("Every landmark that was expected once is expected whenever it is in v
     std::map<TrackId, double> last;
     auto z = scene.observations().begin();
     for (double t = kExchange; t < scene.duration(); t += kExchange) {
-      TrackBatch batch{{}, {}, t};
+      UndistortedBatch batch{{}, {}, t};
       for (; z != scene.observations().end() && z->t <= t; ++z) {
         batch.observations.push_back(*z);
         last[z->track] = z->t;
@@ -36,10 +36,10 @@ TEST_CASE("Every landmark that was expected once is expected whenever it is in v
         return gone;
       });
       backend.advance(batch);
-      const Feedback feedback = backend.feedback({true, false, true});
+      const BackEndFeedback feedback = backend.feedback({true, false, true});
       for (const TrackId id : feedback.outliers) known.erase(id);
       std::set<TrackId> expected;
-      for (const ExpectedFeature& feature : feedback.expected) expected.insert(feature.track);
+      for (const UndistortedFeature& feature : feedback.expected) expected.insert(feature.track);
       if (feedback.newest) {
         const SE3 T = extrapolate(*feedback.newest, t - feedback.newest->t).T.inverse();
         for (const Landmark& landmark : backend.map()) {

@@ -171,7 +171,7 @@ InitialMap InitialMapFinder::map_of(const TrackBuffer& tracks, const Candidates&
     map.tracks.push_back(track);
     const int landmark = graph.add_landmark(point.position());
     if (anchored.contains(track)) anchors.push_back(landmark);
-    for (const TrackObservation& z : tracks.observations(track)) {
+    for (const UndistortedObservation& z : tracks.observations(track)) {
       const int k = graph.interval_of(z.t);
       // A stationary period repeats its observations: those near its states are enough.
       const bool counts = k >= 0 && (!stationary[index(k)] || std::min(z.t - graph.states[index(k - 1)].t,

@@ -43,7 +43,7 @@ void LandmarkTriangulation::add(Estimate& estimate, TrackTable& tracks) {
     if (misfit) estimate.count(Count::misfits);
     if (!place) continue;
     const int landmark = estimate.add_landmark(place->first, place->second);
-    for (const TrackObservation& z : observations) {
+    for (const UndistortedObservation& z : observations) {
       estimate.smoother.add_observation(landmark, to_observation(z, sigma_scale_));
     }
     estimate.count(Count::landmarks);
@@ -70,10 +70,10 @@ void LandmarkTriangulation::drop_guesses(Estimate& estimate) {
   });
 }
 
-LandmarkTriangulation::Location LandmarkTriangulation::locate(const Estimate& estimate,
-                                                              std::span<const TrackObservation> observations) const {
+LandmarkTriangulation::Location LandmarkTriangulation::locate(
+    const Estimate& estimate, std::span<const UndistortedObservation> observations) const {
   const FactorGraph& graph = estimate.graph();
-  const auto marginalised = [&](const TrackObservation& z) {
+  const auto marginalised = [&](const UndistortedObservation& z) {
     return graph.interval_of(z.t) <= estimate.smoother.first_state();
   };
   const auto usable =  // none is later than the newest state
@@ -83,7 +83,7 @@ LandmarkTriangulation::Location LandmarkTriangulation::locate(const Estimate& es
   std::vector<Vector2> pixels;
   const std::size_t views = std::min(kViews, usable.size());
   for (std::size_t i = 0; i < views; ++i) {
-    const TrackObservation& z = usable[i * (usable.size() - 1) / (views - 1)];
+    const UndistortedObservation& z = usable[i * (usable.size() - 1) / (views - 1)];
     poses.push_back(*estimate.pose(z.t));
     pixels.push_back(z.pixel);
   }

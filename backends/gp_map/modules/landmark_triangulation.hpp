@@ -39,7 +39,7 @@ class LandmarkTriangulation {
     std::optional<std::pair<Vector3, LandmarkPrior>> place = {};  ///< none yet,
     bool misfit = false;                                          ///< or none because no point fits the observations
   };
-  Location locate(const Estimate& estimate, std::span<const TrackObservation> observations) const;
+  Location locate(const Estimate& estimate, std::span<const UndistortedObservation> observations) const;
 
   MapOptions options_;
   double sigma_scale_;

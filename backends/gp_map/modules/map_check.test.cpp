@@ -9,11 +9,11 @@ namespace {
 /// Live tracks of which the first ones are landmarks and the others were rejected.
 TrackTable table_with(int landmarks, int outliers) {
   TrackTable tracks(1.0);
-  TrackBatch batch;
+  UndistortedBatch batch;
   batch.until = 1.0;
   for (TrackId id = 0; id < landmarks + outliers; ++id) batch.observations.push_back({id, 0.05, {100.0, 90.0}, 1.0});
   tracks.receive(batch);
-  tracks.advance_to(1.0, [](const TrackObservation&) {});
+  tracks.advance_to(1.0, [](const UndistortedObservation&) {});
   for (int j = 0; j < landmarks + outliers; ++j) tracks.become_landmark(j, j);
   for (int j = landmarks; j < landmarks + outliers; ++j) tracks.end_track_of(j, TrackTable::Role::outlier);
   return tracks;

@@ -16,8 +16,8 @@ TEST_CASE("A drifting track keeps its beginning as a landmark, and other tracks 
   constexpr double kAfter = 1.0, kSpeed = 3.0;  // [s], [px/s]: its mean error stays far below the outliers'
   const auto drifts = [](TrackId track) { return track % 5 == 0; };
   std::map<TrackId, double> begin, end;
-  std::vector<TrackObservation> observations;
-  for (TrackObservation z : scene.observations()) {
+  std::vector<UndistortedObservation> observations;
+  for (UndistortedObservation z : scene.observations()) {
     begin.try_emplace(z.track, z.t);
     end[z.track] = z.t;
     const double angle = static_cast<double>(z.track), since = z.t - begin[z.track] - kAfter;

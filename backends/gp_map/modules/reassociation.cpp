@@ -35,7 +35,7 @@ void ReassociationOptions::declare(OptionSet& set) {
   set.add("time", time, "after which a re-acquired track is judged [s]").range(0.0);
 }
 
-void Reassociation::observe(Estimate& estimate, TrackTable& tracks, const TrackObservation& z) {
+void Reassociation::observe(Estimate& estimate, TrackTable& tracks, const UndistortedObservation& z) {
   const TrackTable::Track& track = tracks.at(z.track);
   const std::vector<int>& intervals = estimate.graph().landmarks[index(track.landmark)].intervals;
   const int last = intervals.empty() ? 0 : intervals.back();

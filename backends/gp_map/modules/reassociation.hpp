@@ -26,7 +26,7 @@ class Reassociation {
   /// An observation of a landmark's track, perhaps the first one since it was re-acquired. The track continues its
   /// landmark if the budget of returns allows it. Otherwise it becomes another landmark, with a prior where the old one
   /// is expected; the old one stays as it is.
-  void observe(Estimate& estimate, TrackTable& tracks, const TrackObservation& z);
+  void observe(Estimate& estimate, TrackTable& tracks, const UndistortedObservation& z);
 
   /// Rejects tracks that stay far from their landmarks' expected places. None if they are most of many, because then
   /// the motion is wrong.

@@ -17,8 +17,8 @@ TEST_CASE(
     "[long]") {
   const TrackedScene scene(8.0, R"({"tracks": {"lifetime": [6.0, 8.0]}})");
   constexpr double kPeriod = 2.0, kGone = 0.7;  // [s]
-  const auto phase = [](const TrackObservation& z) { return z.t + 0.37 * static_cast<double>(z.track); };
-  const auto is_seen = [&](const TrackObservation& z) { return std::fmod(phase(z), kPeriod) > kGone; };
+  const auto phase = [](const UndistortedObservation& z) { return z.t + 0.37 * static_cast<double>(z.track); };
+  const auto is_seen = [&](const UndistortedObservation& z) { return std::fmod(phase(z), kPeriod) > kGone; };
   const auto landmarks_with = [&](int returns) {
     BackEndContext context;
     context.camera = scene.camera();
@@ -26,8 +26,8 @@ TEST_CASE(
     options.reassociation.returns = returns;
     GpMap backend(options, context);
     std::map<TrackId, double> last;
-    TrackBatch batch;
-    for (const TrackObservation& z : scene.observations()) {
+    UndistortedBatch batch;
+    for (const UndistortedObservation& z : scene.observations()) {
       if (!is_seen(z)) continue;
       last[z.track] = z.t;
       for (auto i = last.begin(); i != last.end();) {
@@ -74,8 +74,8 @@ TEST_CASE("A track that is re-acquired off its landmark is reported as an outlie
   GpMap backend({}, context);
   std::set<TrackId> before, displaced, after, reported;
   std::set<TrackId> live;
-  TrackBatch batch;
-  for (TrackObservation z : scene.observations()) {
+  UndistortedBatch batch;
+  for (UndistortedObservation z : scene.observations()) {
     if (is_mismatched(z.track)) {
       if ((z.t > kGone && z.t < kDisplaced) || (z.t > kGoneAgain && z.t < kBack)) {
         if (live.erase(z.track) > 0) batch.ended.push_back({z.track, z.t});
@@ -120,9 +120,9 @@ TEST_CASE("A track that ends and is seen again before the next state has not end
     Options options;
     options.reassociation.returns = 1000;
     GpMap backend(options, context);
-    TrackBatch batch{scene.observations(), {}, scene.duration()};
+    UndistortedBatch batch{scene.observations(), {}, scene.duration()};
     std::set<TrackId> seen;
-    for (const TrackObservation& z : batch.observations) {
+    for (const UndistortedObservation& z : batch.observations) {
       if (!seen.insert(z.track).second && flickering) batch.ended.push_back({z.track, z.t - 1e-6});
     }
     backend.advance(batch);

@@ -26,7 +26,7 @@ void PlacementOptions::declare(OptionSet& set) {
       .range(1e-3, 10.0);
 }
 
-void StatePlacement::observe(const TrackObservation& observation) {
+void StatePlacement::observe(const UndistortedObservation& observation) {
   if (!first_) first_ = observation.t;
   last_observation_ = observation.t;
   if (options_.rule != Rule::rate) later_.push_back(observation);
@@ -55,7 +55,7 @@ double StatePlacement::time_by_data() {
   return std::clamp(enough_.value_or(latest()), earliest(), latest());
 }
 
-void StatePlacement::consider(const TrackObservation& observation) {
+void StatePlacement::consider(const UndistortedObservation& observation) {
   ++count_;
   if (options_.rule == Rule::prediction) {
     const std::optional<double> deviation = deviation_(observation);

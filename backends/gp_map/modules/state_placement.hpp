@@ -41,7 +41,7 @@ struct PlacementOptions {
 class StatePlacement {
  public:
   /// Distance of an observation from its prediction [sigmas]; none where there is no prediction.
-  using Deviation = std::function<std::optional<double>(const TrackObservation&)>;
+  using Deviation = std::function<std::optional<double>(const UndistortedObservation&)>;
 
   explicit StatePlacement(const PlacementOptions& options) : options_(options) {}
 
@@ -49,7 +49,7 @@ class StatePlacement {
   void predict(Deviation deviation) { deviation_ = std::move(deviation); }
 
   /// Observations come in the order of their times.
-  void observe(const TrackObservation& observation);
+  void observe(const UndistortedObservation& observation);
 
   /// The time of the next state, if it is known and ≤ now.
   std::optional<double> next(double now);
@@ -70,18 +70,18 @@ class StatePlacement {
   };
 
   double time_by_data();
-  void consider(const TrackObservation& observation);
+  void consider(const UndistortedObservation& observation);
   bool is_enough() const;
   double earliest() const { return *newest_ + options_.min_spacing; }
   double latest() const { return *newest_ + std::max(options_.min_spacing, options_.max_spacing); }
   void place(double t);
 
   PlacementOptions options_;
-  std::deque<TrackObservation> later_;             ///< than the newest state, not considered yet
+  std::deque<UndistortedObservation> later_;       ///< than the newest state, not considered yet
   std::optional<double> enough_;                   ///< [s] when the data require the next state
   int count_ = 0;                                  ///< considered observations since the newest state
   std::map<TrackId, Displacement> displacements_;  ///< rule "motion"
-  Deviation deviation_ = [](const TrackObservation&) { return std::nullopt; };
+  Deviation deviation_ = [](const UndistortedObservation&) { return std::nullopt; };
   std::map<TrackId, bool> deviates_;  ///< rule "prediction": tracks seen since the newest state
   int deviating_ = 0;                 ///< how many of these deviate
   std::optional<double> first_, newest_;

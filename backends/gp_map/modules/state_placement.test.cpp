@@ -11,8 +11,8 @@ namespace {
 using Rule = PlacementOptions::Rule;
 
 /// One observation a millisecond; ten tracks that all move at `speed` [px/s], except for an outlier.
-std::vector<TrackObservation> moving(double speed, double until) {
-  std::vector<TrackObservation> result;
+std::vector<UndistortedObservation> moving(double speed, double until) {
+  std::vector<UndistortedObservation> result;
   for (int i = 0; 1e-3 * i <= until; ++i) {
     const double t = 1e-3 * i;
     result.push_back({i % 10, t, {(i % 10 == 0 ? 1000.0 : speed) * t, 5.0}, 1.0});
@@ -20,7 +20,7 @@ std::vector<TrackObservation> moving(double speed, double until) {
   return result;
 }
 
-std::vector<double> placed(const PlacementOptions& options, const std::vector<TrackObservation>& observations,
+std::vector<double> placed(const PlacementOptions& options, const std::vector<UndistortedObservation>& observations,
                            double batch) {
   StatePlacement placement(options);
   std::vector<double> times;
@@ -44,7 +44,7 @@ TEST_CASE(
   options.min_spacing = 0.01;
   options.max_spacing = 0.1;
   StatePlacement placement(options);
-  for (const TrackObservation& z : moving(100.0, 0.5)) placement.observe(z);
+  for (const UndistortedObservation& z : moving(100.0, 0.5)) placement.observe(z);
   std::vector<double> times;
   const auto next = [&] {
     const auto t = placement.next(0.5);
@@ -55,7 +55,7 @@ TEST_CASE(
   REQUIRE(next());  // without a prediction
   CHECK(times == std::vector{0.0, 0.1});
   // One track of ten always deviates, all do from 0.25 s on.
-  placement.predict([&](const TrackObservation& z) {
+  placement.predict([&](const UndistortedObservation& z) {
     return std::optional<double>(z.track == 0 || z.t > 0.25 ? 2.0 * options.deviation : 0.5 * options.deviation);
   });
   while (next()) {

@@ -15,8 +15,8 @@ TEST_CASE("While running, a track with larger errors than the others counts less
   const TrackedScene scene(8.0, R"({"tracks": {"lifetime": [2.0, 3.0]}})");
   const auto errs = [](TrackId track) { return track % 4 == 0; };
   constexpr double kPeriod = 0.3, kAmplitude = 4.0;  // [s], [px]
-  std::vector<TrackObservation> observations;
-  for (TrackObservation z : scene.observations()) {
+  std::vector<UndistortedObservation> observations;
+  for (UndistortedObservation z : scene.observations()) {
     const double phase = 2.0 * std::numbers::pi * (z.t / kPeriod + 0.1 * static_cast<double>(z.track));
     if (errs(z.track)) z.pixel += kAmplitude * std::cos(phase) * Vector2(std::cos(z.track), std::sin(z.track));
     observations.push_back(z);

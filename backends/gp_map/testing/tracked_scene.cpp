@@ -30,6 +30,7 @@ TrackedScene::TrackedScene(double duration, const char* options, std::uint64_t s
   const Motion motion = make_motion(motion_options, duration, seed, ".", "motion");
   Scene scene(scene_options, camera_, motion, duration, Random(seed));
   tracks_ = simulate_tracks(track_options, camera_, motion, scene, duration, seed, "tracks");
+  observations_ = undistort({tracks_.observations, {}, duration}, camera_).observations;
   ground_truth_ = sample_motion(motion, duration, 200.0);
 }
 
@@ -42,12 +43,12 @@ Run run(const TrackedScene& scene, const RunOptions& options) {
   };
   Run result;
   result.backend = std::make_unique<GpMap>(read_options<Options>(parse_json(options.backend), "backend"), context);
-  TrackPlayer player(scene.observations());
+  TrackPlayer player = scene.player();
   TrackBatch batch;
   bool more = true;
   for (double t = options.chunk; more; t += options.chunk) {
     more = player.advance({t}, batch);
-    result.backend->advance(batch);
+    result.backend->advance(scene.undistorted(batch));
   }
   result.backend->finish();
   result.causal = PoseTrajectory(std::move(causal));

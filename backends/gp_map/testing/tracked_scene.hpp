@@ -6,6 +6,7 @@
 
 #include "backends/gp_map/gp_map.hpp"
 #include "core/plugin/track_player.hpp"
+#include "core/plugin/undistort.hpp"
 #include "core/simulation/track_simulator.hpp"
 #include "core/support/index.hpp"
 #include "eval/scores.hpp"
@@ -21,7 +22,10 @@ class TrackedScene {
   PinholeCamera camera() const { return camera_.pinhole; }
   double duration() const { return duration_; }
   const PoseTrajectory& ground_truth() const { return ground_truth_; }
-  const std::vector<TrackObservation>& observations() const { return tracks_.observations; }
+  const std::vector<UndistortedObservation>& observations() const { return observations_; }
+  /// Plays the tracks as a front-end does.
+  TrackPlayer player() const { return TrackPlayer(tracks_.observations); }
+  UndistortedBatch undistorted(const TrackBatch& batch) const { return undistort(batch, camera_); }
   const Vector3& point(TrackId track) const { return tracks_.tracks[index(track)].point; }
 
  private:
@@ -29,6 +33,7 @@ class TrackedScene {
   Camera camera_;
   PoseTrajectory ground_truth_;
   SimulatedTracks tracks_;
+  std::vector<UndistortedObservation> observations_;
 };
 
 struct RunOptions {

@@ -16,8 +16,8 @@ class Tiny : public evbench::BackEnd {
     status_.reason = std::to_string(options.count);
   }
 
-  void advance(const evbench::TrackBatch&) override {}
-  evbench::Feedback feedback(const evbench::FeedbackNeeds&) override { return {}; }
+  void advance(const evbench::UndistortedBatch&) override {}
+  evbench::BackEndFeedback feedback(const evbench::FeedbackNeeds&) override { return {}; }
   void finish() override {}
   evbench::Status status() const override { return status_; }
   evbench::PoseTrajectory trajectory() const override { return {}; }

@@ -46,7 +46,7 @@ class ClassName : public evbench::BackEnd {
         initialiser_(options.initialiser, context.camera),
         monitor_(context.patience) {}
 
-  void advance(const TrackBatch& batch) override {
+  void advance(const UndistortedBatch& batch) override {
     until_ = batch.until;
     if (monitor_.lost()) return;
     tracks_.add(batch.observations);
@@ -58,9 +58,8 @@ class ClassName : public evbench::BackEnd {
     }
   }
 
-  Feedback feedback(const FeedbackNeeds& needs) override {
-    Feedback result;
-    result.t = until_;
+  BackEndFeedback feedback(const FeedbackNeeds& needs) override {
+    BackEndFeedback result;
     result.state = monitor_.state();
     result.outliers = std::exchange(outliers_, {});
     if (trajectory_.empty() || monitor_.lost()) return result;

@@ -13,10 +13,10 @@ class ClassName : public evbench::BackEnd {
 
   ClassName(const Options&, const BackEndContext& context) : context_(context) {}
 
-  void advance(const TrackBatch& batch) override {
+  void advance(const UndistortedBatch& batch) override {
     if (batch.observations.empty()) return;
     SE3 T;  // T_world_camera
-    for (const TrackObservation& z : batch.observations) {
+    for (const UndistortedObservation& z : batch.observations) {
       T.p.head<2>() -= z.pixel / (context_.camera.fx * static_cast<double>(batch.observations.size()));
     }
     const StampedPose pose{batch.observations.back().t, T};
@@ -25,7 +25,7 @@ class ClassName : public evbench::BackEnd {
     context_.publish({pose});
   }
 
-  Feedback feedback(const FeedbackNeeds&) override { return {}; }
+  BackEndFeedback feedback(const FeedbackNeeds&) override { return {}; }
   void finish() override {}
   Status status() const override { return poses_.empty() ? Status{RunState::failed, "no observations"} : Status{}; }
   PoseTrajectory trajectory() const override { return PoseTrajectory(poses_); }
