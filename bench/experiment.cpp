@@ -19,6 +19,7 @@
 #include "core/support/json.hpp"
 #include "core/support/json_reason.hpp"
 #include "eval/old_names.hpp"
+#include "eval/protocols.hpp"
 
 namespace evbench {
 namespace {
@@ -337,6 +338,7 @@ Experiment ConfigFile::experiment(const std::vector<std::string>& overrides, con
   Json config = config_;
   for (const std::string& assignment : overrides) set_value(config, assignment, schema_, origin);
   std::vector<std::string> remarks = rename_old_keys(config);
+  if (config.is_object() && config.contains("evaluation")) fill_in_protocol(config["evaluation"]);
   Experiment experiment = naming_overrides(
       path_, overrides, [&] { return read_config(config, path_, plugins_); }, origin);
   experiment.remarks = std::move(remarks);
@@ -393,6 +395,7 @@ ScoreOptions read_evaluation(const std::string& path, const Json& otherwise, con
     }
     set_value(json, assignment, schema);
   }
+  fill_in_protocol(json["evaluation"]);
   const std::string file = path.empty() ? place : path;
   return naming_overrides(file, overrides,
                           [&] { return read_options<ScoreOptions>(json["evaluation"], file + ": evaluation"); });

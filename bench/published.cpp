@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 
 #include "core/support/error.hpp"
@@ -13,7 +14,10 @@
 #include "eval/table_text.hpp"
 
 namespace evbench {
+namespace fs = std::filesystem;
 namespace {
+
+constexpr const char* kConfigs = "configs/paper";
 
 PublishedRow read_row(const RecordReader& json) {
   PublishedRow row{json.text("label"), json.text_or("over", ""), {}};
@@ -87,10 +91,30 @@ void add_row(TextTable& table, const std::string& experiment, const PublishedRow
 
 }  // namespace
 
+std::string find_paper_configs(const std::string& asked) {
+  std::error_code error;
+  if (!asked.empty()) {
+    if (fs::is_directory(asked, error)) return asked;
+    throw InputError(fmt::format("{}: there is no such folder; expected one with configs, and published.json", asked));
+  }
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const std::string installed = program.parent_path().parent_path() / "share/evbench" / kConfigs;
+  for (const std::string& folder : {std::string(kConfigs), installed}) {
+    if (fs::is_directory(folder, error)) return folder;
+  }
+  throw InputError(
+      fmt::format("{}: there is no such folder here, and no {}. The paper's configs are in evbench's repository: "
+                  "expected its folder as the working folder, or --configs REPOSITORY/{}",
+                  kConfigs, installed, kConfigs));
+}
+
 Published read_published(const std::string& path) {
   const Json file = read_json_file(path);
   const RecordReader json(file, path);
-  Published published{json.text("paper"), {}};
+  Published published{json.text("paper"), {}, {}};
+  if (!json.at("benchmark").is_null()) {
+    published.benchmark = read_published_benchmark({json.at("benchmark"), path + ": benchmark"});
+  }
   for (const RecordReader& result : json.list("results")) published.results.push_back(read_result(result));
   return published;
 }

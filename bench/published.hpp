@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/published_benchmark.hpp"
 #include "eval/run_record.hpp"
 #include "eval/table.hpp"
 
@@ -37,8 +38,13 @@ struct PublishedResult {
 /// configs/paper/published.json.
 struct Published {
   std::string paper;
+  std::optional<PublishedBenchmark> benchmark;
   std::vector<PublishedResult> results;
 };
+
+/// The folder with the paper's configs and published.json: `asked` or, if empty, configs/paper in the working folder,
+/// else the installed one. Throws InputError if there is none.
+std::string find_paper_configs(const std::string& asked);
 
 /// Throws InputError with the place for a file that can't be read or has another structure.
 Published read_published(const std::string& path);

@@ -15,6 +15,7 @@
 #include "core/data/map_file.hpp"
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
+#include "core/data/velocity_file.hpp"
 #include "core/io/sha256.hpp"
 #include "core/io/utc_time.hpp"
 #include "eval/json_file.hpp"
@@ -141,6 +142,7 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
 void write_segment(const AtomicFolder& folder, const TrajectorySegment& segment, const std::string& suffix) {
   folder.write("final" + suffix + ".tum", format_tum(segment.final_trajectory));
   folder.write("causal" + suffix + ".tum", format_tum(segment.causal_trajectory));
+  if (!segment.velocities.empty()) folder.write("velocities" + suffix + ".txt", format_velocities(segment.velocities));
   folder.write("causal_poses" + suffix + ".txt", format_causal_poses(segment.published));
   if (!segment.relative.empty()) folder.write("covariance" + suffix + ".txt", format_relative_poses(segment.relative));
   folder.write("map" + suffix + ".ply", format_map(segment.map));

@@ -29,6 +29,7 @@ class EmptyFolders {
 ///   manifest.json    program, host, time of completion, seed, SHA-256 of config.json, of each input and of the tracks;
 ///                    sizes of the files that do not change
 ///   final.tum, causal.tum, map.ply   the final (smoothed) and the causal trajectory, the landmarks
+///   velocities.txt                   body velocities at the poses of final.tum, if the back-end has them
 ///   causal_poses.txt                 all published poses, with the times at which they were known
 ///   covariance.txt   relative poses with covariances, if the back-end has them
 ///   groundtruth.tum  ground truth in the time range of the run and 1 s around it, if the source has it

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <map>
 
-#include "bench/common_time.hpp"
+#include "bench/scores_by_protocol.hpp"
 #include "bench/testing/keys.hpp"
 #include "bench/testing/program.hpp"
 #include "core/data/tum.hpp"

@@ -20,6 +20,11 @@ PoseErrors absolute_errors(std::span<const PosePair> pairs) {
   return errors;
 }
 
+double yaw_error_deg(const PosePair& pair) {
+  const Matrix3 R = (pair.estimate.q * pair.ground_truth.q.conjugate()).toRotationMatrix();
+  return std::abs(std::atan2(R(1, 0), R(0, 0))) * kDegrees;
+}
+
 PoseErrors relative_errors(std::span<const PosePair> pairs,
                            std::span<const std::pair<std::size_t, std::size_t>> indices) {
   PoseErrors errors;

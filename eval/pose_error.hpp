@@ -18,6 +18,10 @@ struct PoseErrors {
 /// R_estimateᵀ R_truth. Sturm et al. 2012, section IV.
 PoseErrors absolute_errors(std::span<const PosePair> pairs);
 
+/// The yaw of the rotation that turns the ground truth's orientation into the estimate's, R_estimate R_truthᵀ, about
+/// the world's z axis [deg, 0 to 180]: that of the order z, y, x, as rpg_trajectory_evaluation has it.
+double yaw_error_deg(const PosePair& pair);
+
 /// Unit of the distance from the first to the second pose of a relative error.
 enum class DeltaUnit {
   frames,   ///< pairs of associated poses

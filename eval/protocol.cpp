@@ -18,6 +18,15 @@ std::string range_text(const Json& range) {
   return fmt::format("{} to {} s", from.get<double>(), to.get<double>());
 }
 
+/// "deio: ", or "custom (deio but align_first): " if options differ; empty without a protocol.
+std::string name_text(const Json& scores) {
+  const Json protocol = scores.value("protocol", Json());
+  if (!protocol.is_object()) return "";
+  const auto name = protocol.at("name").get<std::string>();
+  const auto custom = protocol.at("custom").get<std::vector<std::string>>();
+  return custom.empty() ? name + ": " : fmt::format("custom ({} but {}): ", name, fmt::join(custom, ", "));
+}
+
 std::string alignment_text(const Json& alignment) {
   const auto method = alignment.at("method").get<std::string>();
   if (method == "none") return "no alignment";
@@ -31,6 +40,9 @@ std::string alignment_text(const Json& alignment) {
     return text + fmt::format(" on the first {} poses", dump_json(first));
   if (const Json& range = alignment.at("range_s"); !range.is_null()) {
     return text + " on the poses " + range_text(range);
+  }
+  if (const Json seconds = alignment.value("seconds", Json()); !seconds.is_null()) {
+    return text + " on the poses " + range_text(seconds) + " after the first";
   }
   return text + " on all poses";
 }
@@ -69,6 +81,16 @@ std::string segments_text(const Json& segments) {
                      segments.at("unit") == "percent" ? "% of the path" : "m");
 }
 
+std::string velocity_text(const VelocityScores& velocity) {
+  const auto line = [](const char* source, const VelocityErrors& errors) {
+    if (!std::isfinite(errors.linear.auc)) return std::string();
+    return fmt::format("velocity, {}: RVE median {:.4f}, AUC {:.4f}; angular: median {:.4f}, AUC {:.4f}; {} times\n",
+                       source, errors.linear.median, errors.linear.auc, errors.angular.median, errors.angular.auc,
+                       errors.times);
+  };
+  return (velocity.own ? line("its own", *velocity.own) : "") + line("differentiated", velocity.differentiated);
+}
+
 constexpr int kNameWidth = 15;  // "0.625 m [deg/m]"
 
 std::string row(const std::string& name, const Statistics& s) {
@@ -81,8 +103,8 @@ std::string row(const std::string& name, const Statistics& s) {
 
 std::string protocol(const Json& scores, const std::string& place, const ProtocolParts& parts) {
   try {
-    std::string text =
-        fmt::format("{}; {}", alignment_text(scores.at("alignment")), association_text(scores.at("association")));
+    std::string text = fmt::format("{}{}; {}", name_text(scores), alignment_text(scores.at("alignment")),
+                                   association_text(scores.at("association")));
     if (parts.relative) text += "; " + relative_text(scores.at("rpe"));
     if (parts.segments && scores.contains("segments")) text += "; segments " + segments_text(scores.at("segments"));
     if (parts.latency && scores.contains("equal_latency") && !scores.at("equal_latency").is_null()) {
@@ -97,6 +119,9 @@ std::string protocol(const Json& scores, const std::string& place, const Protoco
 std::string describe(const Scores& scores) {
   const Json json = to_json(scores);
   std::string text;
+  if (const std::string name = name_text(json); !name.empty()) {
+    text += fmt::format("protocol     {}\n", name.substr(0, name.size() - 2));
+  }
   text += fmt::format("alignment    {}\n", alignment_text(json.at("alignment")));
   if (!scores.alignment.note.empty()) text += fmt::format("             {}\n", scores.alignment.note);
   text += fmt::format("association  {}\n", association_text(json.at("association")));
@@ -120,6 +145,11 @@ std::string describe(const Scores& scores) {
   if (std::isfinite(scores.ate.trans_percent)) {
     text += fmt::format("\nATE {:.4f} % of the path\n", scores.ate.trans_percent);
   }
+  if (const MeanErrors& mean = scores.mean; std::isfinite(mean.mpe_percent)) {
+    text += fmt::format("MPE {:.4f} %, MRE {:.4f} deg/m, MYE {:.4f} deg/m: means over {:.6f} m of ground truth\n",
+                        mean.mpe_percent, mean.mre_deg_per_m, mean.mye_deg_per_m, scores.ground_truth_path_m);
+  }
+  if (scores.velocity) text += velocity_text(*scores.velocity);
   return text;
 }
 

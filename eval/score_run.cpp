@@ -7,6 +7,7 @@
 
 #include "core/data/causal_poses.hpp"
 #include "core/data/tum.hpp"
+#include "core/data/velocity_file.hpp"
 #include "eval/covariance_scores.hpp"
 #include "eval/latency.hpp"
 #include "eval/old_names.hpp"
@@ -27,13 +28,24 @@ bool exists(const std::string& path) {
 }
 
 struct RunTrajectories {
-  PoseTrajectory ground_truth, estimate;  ///< empty if missing
+  PoseTrajectory ground_truth;  ///< empty if missing
+  RunEstimate estimate;
 };
+
+/// Velocities of the poses that were the newest when they were published.
+BodyVelocities published_velocities(const std::string& path) {
+  std::vector<StampedVelocity> velocities;
+  for (const CausalPose& pose : read_causal_poses(path)) {
+    if (!velocities.empty() && pose.t <= velocities.back().t) continue;
+    if (!pose.velocity) return {};
+    velocities.push_back({pose.t, *pose.velocity});
+  }
+  return BodyVelocities(std::move(velocities));
+}
 
 RunTrajectories read_trajectories(const std::string& folder, bool causal) {
   const std::string truth = folder + "/groundtruth.tum";
-  return {std::filesystem::exists(truth) ? read_tum(truth) : PoseTrajectory(),
-          read_estimate(file_of_run(folder, causal ? "causal.tum" : "final.tum"))};
+  return {std::filesystem::exists(truth) ? read_tum(truth) : PoseTrajectory(), read_run_estimate(folder, causal)};
 }
 
 /// Throws InputError with the reason if there are no scores.
@@ -51,6 +63,12 @@ Scores compare(const PoseTrajectory& ground_truth, const PoseTrajectory& estimat
                                  asked[0], asked[1], record.range->from, record.range->to));
   }
   return score(ground_truth, estimate, options);
+}
+
+Scores compare_with_velocities(const RunTrajectories& run, const ScoreOptions& options, const RunRecord& record) {
+  Scores scores = compare(run.ground_truth, run.estimate.poses, options, record);
+  score_velocities(run.ground_truth, {}, run.estimate.poses, run.estimate.velocities, scores);
+  return scores;
 }
 
 /// Scores the estimates that were available `latency` [s] after the time of each ground-truth pose.
@@ -100,13 +118,21 @@ PoseTrajectory read_estimate(const std::string& path) {
   return empty ? PoseTrajectory() : read_tum(path);
 }
 
+RunEstimate read_run_estimate(const std::string& folder, bool causal) {
+  const std::string velocities = file_of_run(folder, causal ? "causal_poses.txt" : "velocities.txt");
+  return {read_estimate(file_of_run(folder, causal ? "causal.tum" : "final.tum")),
+          !exists(velocities) ? BodyVelocities()
+          : causal            ? published_velocities(velocities)
+                              : read_velocities(velocities)};
+}
+
 void score_run(const std::string& folder, const ScoreOptions& options, RunRecord& record) {
   const auto set = [&](bool causal, Json& scores, std::string& unscored) {
     const RunTrajectories trajectories = read_trajectories(folder, causal);
     scores = nullptr;
     unscored.clear();
     try {
-      scores = to_json(compare(trajectories.ground_truth, trajectories.estimate, options, record));
+      scores = to_json(compare_with_velocities(trajectories, options, record));
     } catch (const InputError& error) {
       unscored = error.what();
       return;
@@ -124,17 +150,17 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
 
 Json scores_of(const std::string& folder, bool causal, const ScoreOptions& options, const RunRecord& record) {
   const RunTrajectories trajectories = read_trajectories(folder, causal);
-  Json scores = to_json(compare(trajectories.ground_truth, trajectories.estimate, options, record));
+  Json scores = to_json(compare_with_velocities(trajectories, options, record));
   if (causal) add_latencies(folder, trajectories.ground_truth, options, record, scores);
   return scores;
 }
 
 ScoredEstimate score_estimate(const std::string& folder, bool causal, const ScoreOptions& options,
                               const RunRecord& record) {
-  RunTrajectories trajectories = read_trajectories(folder, causal);
+  RunTrajectories run = read_trajectories(folder, causal);
   try {
-    Scores scores = compare(trajectories.ground_truth, trajectories.estimate, options, record);
-    return {std::move(trajectories.estimate), std::move(scores)};
+    Scores scores = compare_with_velocities(run, options, record);
+    return {std::move(run.estimate.poses), std::move(scores)};
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", folder, error.what()));
   }

@@ -10,8 +10,15 @@ namespace evbench {
 /// Reads a run's final.tum or causal.tum; empty if the run has no trajectory.
 PoseTrajectory read_estimate(const std::string& path);
 
-/// Scores the files of a run's folder, final.tum, causal.tum, causal_poses.txt (at zero and at equal latency) and
-/// covariance.txt, against groundtruth.tum. Sets the record's scores, or the reason why there are none (no
+/// An estimate of a run, as it was written.
+struct RunEstimate {
+  PoseTrajectory poses;       ///< empty if the run has no trajectory
+  BodyVelocities velocities;  ///< as the back-end states them; empty if it does not
+};
+RunEstimate read_run_estimate(const std::string& folder, bool causal);
+
+/// Scores the files of a run's folder, final.tum, velocities.txt, causal.tum, causal_poses.txt (at zero and at equal
+/// latency) and covariance.txt, against groundtruth.tum. Sets the record's scores, or the reason why there are none (no
 /// groundtruth.tum, no trajectory, too few poses to compare). Ground truth outside of the record's range is not used.
 /// Scores depend only on the written files, so that scoring again gives identical digits. Throws InputError for missing
 /// or damaged files.

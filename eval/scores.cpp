@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/support/index.hpp"
+#include "eval/protocols.hpp"
 
 namespace evbench {
 namespace {
@@ -31,9 +32,13 @@ SegmentOptions segment_options(const ScoreOptions& options) {
 
 /// The pairs on which the alignment is computed.
 std::vector<PosePair> pairs_to_align(const std::vector<PosePair>& pairs, const ScoreOptions& options) {
-  const TimeRange range = parse_range(options.align_range, "align_range");
-  if (options.align_first > 0 && !options.align_range.empty()) {
-    throw InputError("align_first and align_range are both given; expected one of them");
+  TimeRange range = parse_range(options.align_range, "align_range");
+  if ((options.align_first > 0) + !options.align_range.empty() + !options.align_seconds.empty() > 1) {
+    throw InputError("two of align_first, align_range and align_seconds are given; expected one of them");
+  }
+  if (!options.align_seconds.empty()) {
+    const TimeRange seconds = parse_range(options.align_seconds, "align_seconds");
+    range = {pairs.front().t + seconds.from, pairs.front().t + seconds.to};
   }
   std::vector<PosePair> result;
   std::ranges::copy_if(pairs, std::back_inserter(result), [&](const PosePair& pair) { return range.contains(pair.t); });
@@ -59,6 +64,14 @@ PoseErrors centred(std::vector<PosePair> pairs) {
   return absolute_errors(pairs);
 }
 
+MeanErrors mean_errors(const AbsoluteScores& ate, const std::vector<PosePair>& pairs, double path_m) {
+  if (!(path_m > 0.0)) return {};
+  double yaw_deg = 0.0;
+  for (const PosePair& pair : pairs) yaw_deg += yaw_error_deg(pair);
+  return {100.0 * ate.trans_m.mean / path_m, ate.rot_deg.mean / path_m,
+          yaw_deg / static_cast<double>(pairs.size()) / path_m};
+}
+
 double path_length(const std::vector<PosePair>& pairs) {
   double length = 0.0;
   for (std::size_t i = 1; i < pairs.size(); ++i) {
@@ -70,10 +83,18 @@ double path_length(const std::vector<PosePair>& pairs) {
 }  // namespace
 
 void ScoreOptions::declare(OptionSet& set) {
+  set.add("protocol", protocol,
+          "a published protocol by name (evbench list protocols): the values of all options here that are not given "
+          "beside it, but for time_offset, time_range, min_pairs and latency; empty: none")
+      .choices(protocol_choices());
   set.add("alignment", alignment, "how the estimate is aligned to the ground truth")
       .choices(to_strings(kAlignmentNames));
   set.add("align_first", align_first, "align on this many first poses only; 0: on all").range(0);
   set.add("align_range", align_range, "align on the poses in this time range only [s]; empty: on all").size(2).rising();
+  set.add("align_seconds", align_seconds,
+          "align on the poses between these times after the first compared pose only [s]; empty: on all")
+      .size(2)
+      .rising();
   set.add("association", association, "ground truth with which a pose is compared")
       .choices(to_strings(kAssociationNames));
   set.add("tolerance", tolerance, "largest time difference between a compared pose and its ground truth [s]")
@@ -123,6 +144,8 @@ Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate,
   scores.coverage = association.coverage;
   scores.path_m = path_length(pairs);
 
+  const TimeRange range = parse_range(options.time_range, "time_range");
+  const PoseTrajectory truth = ground_truth.cut(range.from, range.to);
   const std::vector<PosePair> aligned = pairs_to_align(pairs, options);
   scores.alignment = align(aligned, method);
   scores.aligned_pairs = method == AlignmentMethod::none ? 0 : aligned.size();
@@ -133,19 +156,57 @@ Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate,
   scores.ate.rot_deg = statistics(absolute.rot_deg);
   scores.ate.rot_centred_deg = statistics(centred(pairs).rot_deg);
   if (scores.path_m > 0.0) scores.ate.trans_percent = 100.0 * scores.ate.trans_m.rmse / scores.path_m;
+  scores.ground_truth_path_m = truth.path_length();
+  scores.mean = mean_errors(scores.ate, pairs, scores.ground_truth_path_m);
 
   const PoseErrors steps = relative_errors(pairs, delta_pairs(pairs, relative));
   scores.rpe.trans_m = statistics(steps.trans_m);
   scores.rpe.rot_deg = statistics(steps.rot_deg);
 
-  const TimeRange range = parse_range(options.time_range, "time_range");
-  score_segments(segment_errors(pairs, segment_options(options), ground_truth.cut(range.from, range.to).path_length()),
-                 scores);
+  score_segments(segment_errors(pairs, segment_options(options), scores.ground_truth_path_m), scores);
   scores.compared = std::move(pairs);
   return scores;
 }
 
+void score_velocities(const PoseTrajectory& ground_truth, const BodyVelocities& true_velocities,
+                      const PoseTrajectory& estimate, const BodyVelocities& own, Scores& scores) {
+  const double offset = scores.options.time_offset, scale = scores.alignment.transform.scale;
+  std::vector<VelocityPair> differentiated, stated;
+  for (const PosePair& pair : scores.compared) {
+    const std::optional<Vector6> truth =
+        true_velocities.empty() ? differentiate(ground_truth, pair.t) : true_velocities.at(pair.t);
+    if (!truth) continue;
+    const auto scaled = [&](Vector6 velocity) {
+      velocity.tail<3>() *= scale;
+      return velocity;
+    };
+    if (const auto velocity = differentiate(estimate, pair.t - offset))
+      differentiated.push_back({*truth, scaled(*velocity)});
+    if (const auto velocity = own.at(pair.t - offset)) stated.push_back({*truth, scaled(*velocity)});
+  }
+  VelocityScores result;
+  result.differentiated = velocity_errors(differentiated);
+  if (!stated.empty()) result.own = velocity_errors(stated);
+  scores.velocity = result;
+}
+
 namespace {
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json to_json(const VelocityErrors& errors) {
+  const auto relative = [](const RelativeVelocityError& error) {
+    return Json{{"auc", number_or_null(error.auc)}, {"median", number_or_null(error.median)}};
+  };
+  return {{"rve", relative(errors.linear)}, {"angular", relative(errors.angular)}, {"times", errors.times}};
+}
+
+Json to_json(const VelocityScores& velocity) {
+  Json json = to_json(velocity.own.value_or(velocity.differentiated));
+  json["source"] = velocity.own ? "own" : "differentiated";
+  json["differentiated"] = to_json(velocity.differentiated);
+  return json;
+}
 
 /// [from, to], with null for an open end; null for all times.
 Json range_json(const OptionSet::List& list) {
@@ -175,26 +236,32 @@ Json segments_json(const Scores& scores) {
 
 Json to_json(const Scores& scores) {
   const ScoreOptions& options = scores.options;
-  const double percent = scores.ate.trans_percent;
   Json json;
+  json["protocol"] = protocol_json(options);
   json["ate"] = {{"trans_m", to_json(scores.ate.trans_m)},
                  {"rot_deg", to_json(scores.ate.rot_deg)},
                  {"rot_centred_deg", to_json(scores.ate.rot_centred_deg)},
-                 {"trans_percent", std::isfinite(percent) ? Json(percent) : Json(nullptr)}};
+                 {"trans_percent", number_or_null(scores.ate.trans_percent)}};
+  json["mpe_percent"] = number_or_null(scores.mean.mpe_percent);
+  json["mre_deg_per_m"] = number_or_null(scores.mean.mre_deg_per_m);
+  json["mye_deg_per_m"] = number_or_null(scores.mean.mye_deg_per_m);
   json["rpe"] = {{"trans_m", to_json(scores.rpe.trans_m)}, {"rot_deg", to_json(scores.rpe.rot_deg)},
                  {"pairs", scores.rpe.trans_m.n},          {"delta", options.rpe_delta},
                  {"delta_unit", options.rpe_unit},         {"pairing", options.rpe_pairing},
                  {"tolerance", options.rpe_tolerance},     {"pairs_from", options.rpe_pairs_from}};
   if (options.segments != "none") json["segments"] = segments_json(scores);
+  if (scores.velocity) json["velocity"] = to_json(*scores.velocity);
   json["pairs"] = scores.pairs;
   json["coverage"] = scores.coverage;
   json["span_s"] = {scores.compared.front().t, scores.compared.back().t};
   json["scale"] = scores.alignment.transform.scale;
   json["path_m"] = scores.path_m;
+  json["ground_truth_path_m"] = scores.ground_truth_path_m;
   json["alignment"] = {{"method", options.alignment},
                        {"poses", scores.aligned_pairs},
                        {"first", options.align_first > 0 ? Json(options.align_first) : Json(nullptr)},
                        {"range_s", range_json(options.align_range)},
+                       {"seconds", range_json(options.align_seconds)},
                        {"note", scores.alignment.note}};
   json["association"] = {{"mode", options.association},
                          {"tolerance_s", options.tolerance},

@@ -127,7 +127,7 @@ TEST_CASE("Contradictory options of an evaluation, and options out of range, are
   CHECK_THROWS_WITH(score(truth, truth, with({{"time_range", {2.0, 1.0}}})),
                     ContainsSubstring("time_range: is [2.0,1.0]; expected rising"));
   CHECK_THROWS_WITH(score(truth, truth, with({{"align_first", 5}, {"align_range", {0.0, 1.0}}})),
-                    ContainsSubstring("align_first and align_range are both given"));
+                    ContainsSubstring("two of align_first, align_range and align_seconds are given"));
   CHECK_THROWS_WITH(score(truth, truth, with({{"align_range", {5.0, 6.0}}})),
                     ContainsSubstring("0 pairs of poses to align on"));
   ScoreOptions unknown;

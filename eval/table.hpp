@@ -77,8 +77,8 @@ std::string make_table(std::span<const RunRecord> runs, const TableOptions& opti
 /// A line for each number that any of the runs has: its key for TableOptions::metrics, and its header.
 std::string list_metrics(std::span<const RunRecord> runs);
 
-/// Whether a table of so many runs shows scores over common time (bench/common_time.hpp). They take long, because the
-/// runs are scored again: tables of more than kCommonTimeRuns runs have them only by request.
+/// Whether a table of so many runs shows scores over common time (bench/scores_by_protocol.hpp). They take long,
+/// because the runs are scored again: tables of more than kCommonTimeRuns runs have them only by request.
 bool shows_common_time(const TableOptions& options, std::size_t runs);
 /// Whether any of these metrics is of common time.
 bool any_of_common_time(const std::vector<std::string>& metrics);

@@ -166,6 +166,14 @@ std::vector<std::string> table_notes(const std::vector<RunNumbers>& runs, const 
   if (std::ranges::any_of(metrics, [](const Metric& metric) { return metric.key.starts_with("common."); })) {
     std::ranges::move(common_time_notes(runs), std::back_inserter(notes));
   }
+  const auto is_velocity = [](const Metric& metric) { return metric.key.find("velocity.") != std::string::npos; };
+  if (std::ranges::any_of(metrics, is_velocity)) {
+    notes.emplace_back(
+        "Velocity AUC: area under the share of times, weighted by speed, at which the relative error of the velocity "
+        "in "
+        "the camera's frame is below 0 to 1, at the scale of the alignment; the back-end's own velocity, or the "
+        "differentiated poses where it has none.");
+  }
   if (shown("realtime_factor")) {
     notes.push_back(
         fmt::format("{}: data time / processing time (front-end and back-end); above 1 is faster than real time.",

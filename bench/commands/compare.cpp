@@ -8,7 +8,7 @@
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/commands/run_selection.hpp"
-#include "bench/common_time.hpp"
+#include "bench/scores_by_protocol.hpp"
 #include "eval/comparison_table.hpp"
 
 namespace evbench {

@@ -10,6 +10,7 @@
 #include "bench/commands/failures.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/number_check.hpp"
+#include "bench/commands/protocol_option.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/figures/run_figures.hpp"
 #include "core/data/pose_file.hpp"
@@ -18,8 +19,10 @@
 #include "core/support/index.hpp"
 #include "core/support/json.hpp"
 #include "eval/error_files.hpp"
+#include "eval/fit_offset.hpp"
 #include "eval/json_file.hpp"
 #include "eval/protocol.hpp"
+#include "eval/protocols.hpp"
 #include "eval/quaternion_order.hpp"
 #include "eval/score_run.hpp"
 #include "eval/table.hpp"
@@ -36,8 +39,9 @@ struct EvalArguments {
   bool align = false, correct_scale = false, align_origin = false;
   bool interpolate = false, all_pairs = false, pairs_from_reference = false;
   int n_to_align = -1;
-  std::optional<double> t_start, t_end;
-  std::string alignment;
+  std::optional<double> t_start, t_end, fit_offset;
+  std::string alignment, protocol;
+  bool velocities = false;
   std::string delta_unit = "f";
   std::string table;  ///< format; empty: a table of several estimates, all numbers of one
   TableLayout layout;
@@ -57,6 +61,7 @@ PoseFile read_file(const std::string& path, const std::string& unit, const std::
   options.times = arguments.times;
   options.may_number = true;
   options.may_lack_unit = true;
+  options.velocities = arguments.velocities;
   return read_poses(path, options);
 }
 
@@ -150,13 +155,14 @@ std::string unit_name(const std::string& letter) {
 
 ScoreOptions score_options(const EvalArguments& arguments) {
   ScoreOptions options = arguments.options;
-  options.alignment = alignment_name(arguments);
-  options.align_first = std::max(arguments.n_to_align, 0);  // 0: all
-  options.association = arguments.interpolate ? "interpolated" : "nearest";
   if (arguments.t_start || arguments.t_end) {
     constexpr double kOpen = std::numeric_limits<double>::infinity();
     options.time_range = {arguments.t_start.value_or(-kOpen), arguments.t_end.value_or(kOpen)};
   }
+  if (!arguments.protocol.empty()) return options_by_protocol(arguments.protocol, options);
+  options.alignment = alignment_name(arguments);
+  options.align_first = std::max(arguments.n_to_align, 0);  // 0: all
+  options.association = arguments.interpolate ? "interpolated" : "nearest";
   options.rpe_unit = unit_name(arguments.delta_unit);
   options.rpe_pairing = arguments.all_pairs ? "all" : "consecutive";
   options.rpe_pairs_from = arguments.pairs_from_reference ? "ground_truth" : "estimate";
@@ -170,7 +176,16 @@ ScoredEstimate score_file(PoseFile ground_truth, const std::string& path, const 
   check_numbers(ground_truth, estimate, path, arguments);
   find_units(ground_truth, estimate, path, arguments);
   try {
-    Scores scores = score(ground_truth.trajectory, estimate.trajectory, score_options(arguments));
+    ScoreOptions options = score_options(arguments);
+    if (arguments.fit_offset) {
+      options.time_offset =
+          fit_time_offset(ground_truth.trajectory, estimate.trajectory, options, *arguments.fit_offset);
+      fmt::print(stderr, "remark: {}: {:.4f} s are added to its times: they make the position error smallest\n", path,
+                 options.time_offset);
+    }
+    Scores scores = score(ground_truth.trajectory, estimate.trajectory, options);
+    score_velocities(ground_truth.trajectory, ground_truth.velocities, estimate.trajectory, estimate.velocities,
+                     scores);
     remark_order(ground_truth, estimate, path, arguments, scores);
     remark_unmatched(ground_truth.trajectory, estimate.trajectory, path, arguments, scores);
     return {std::move(estimate.trajectory), std::move(scores)};
@@ -305,6 +320,22 @@ void add_file_options(CLI::App& command, EvalArguments& arguments) {
   };
   add_order("--groundtruth_quaternion", arguments.ground_truth_quaternion, "ground truth");
   add_order("--estimate_quaternion", arguments.estimate_quaternion, "estimate");
+  command.add_flag("--velocities", arguments.velocities,
+                   "Both files have linear velocities after the pose (t x y z qx qy qz qw vx vy vz), as those of the "
+                   "EvSLAM benchmark: they are scored; otherwise velocities are differentiated");
+}
+
+/// After all options of protocols: none of them can be given beside a protocol's name.
+void add_protocol_option(CLI::App& command, EvalArguments& arguments) {
+  auto* protocol = add_protocol_name(command, arguments.protocol,
+                                     "Score by a published protocol (evbench list protocols) instead of options for "
+                                     "alignment, association, relative errors and segments");
+  for (const char* name :
+       {"--align", "--correct_scale", "--align_origin", "--alignment", "--n_to_align", "--align_range", "--t_max_diff",
+        "--interpolate", "--delta", "--delta_unit", "--delta_tol", "--all_pairs", "--pairs_from_reference",
+        "--segments", "--segment_lengths", "--segment_unit"}) {
+    protocol->excludes(name);
+  }
 }
 
 void add_alignment_options(CLI::App& command, EvalArguments& arguments) {
@@ -340,6 +371,10 @@ void add_association_options(CLI::App& command, EvalArguments& arguments) {
   command.add_option("--t_offset", options.time_offset, "Added to the estimate's times [s]")
       ->check(finite_number())
       ->capture_default_str();
+  command
+      .add_option("--fit_offset", arguments.fit_offset,
+                  "Choose the offset, at most this far from --t_offset, that makes the position error smallest [s]")
+      ->check(above_zero());
   command.add_option("--t_start", arguments.t_start, "Use ground truth from this time on [s]")->check(finite_number());
   command.add_option("--t_end", arguments.t_end, "Use ground truth up to this time [s]")->check(finite_number());
   command.add_flag("--interpolate", arguments.interpolate, "Interpolate the ground truth at the estimate's times");
@@ -419,6 +454,7 @@ void add_eval(CLI::App& app) {
   add_association_options(*command, *arguments);
   add_relative_options(*command, *arguments);
   add_segment_options(*command, *arguments);
+  add_protocol_option(*command, *arguments);
   add_output_options(*command, *arguments);
   command->footer("As evo does, nothing is aligned unless asked for: monocular estimates need -as.");
   command->callback([arguments] { execute(*arguments); });

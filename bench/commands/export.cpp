@@ -13,12 +13,14 @@
 #include "bench/plugins.hpp"
 #include "bench/run_folder.hpp"
 #include "core/data/calib.hpp"
+#include "core/data/times_file.hpp"
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "eval/error_files.hpp"
 #include "eval/evo_result.hpp"
+#include "eval/pose_samples.hpp"
 #include "eval/rpg_layout.hpp"
 #include "eval/score_run.hpp"
 
@@ -29,20 +31,25 @@ struct ExportArguments {
   std::string from;
   std::vector<std::string> overrides;
   std::string ground_truth, tracks, calibration, aligned, errors, evo, rpg;
+  std::string at, out = "/dev/stdout";
+  bool velocity = false;
   std::string evo_error = kEvoErrorNames[0];
   bool causal = false;
   bool force = false;
 
-  std::vector<std::string> outputs() const { return {ground_truth, tracks, calibration, aligned, errors, evo, rpg}; }
+  std::vector<std::string> outputs() const {
+    return {ground_truth, tracks, calibration, aligned, errors, evo, rpg, at.empty() ? "" : out};
+  }
   bool of_source() const { return !ground_truth.empty() || !tracks.empty() || !calibration.empty(); }
-  bool of_run() const { return !aligned.empty() || !errors.empty() || !evo.empty() || !rpg.empty(); }
+  bool of_scores() const { return !aligned.empty() || !errors.empty() || !evo.empty() || !rpg.empty(); }
+  bool of_run() const { return of_scores() || !at.empty(); }
 };
 
 void check(const ExportArguments& arguments) {
   if (!arguments.of_source() && !arguments.of_run()) {
     throw InputError(
         "nothing to export; expected at least one of --groundtruth, --tracks, --calib, --aligned, --errors, --evo, "
-        "--rpg");
+        "--rpg, --at");
   }
   if (!arguments.evo.empty() && std::filesystem::path(arguments.evo).extension() != ".zip") {
     throw InputError(
@@ -51,8 +58,8 @@ void check(const ExportArguments& arguments) {
   std::error_code ignored;
   const bool folder = std::filesystem::is_directory(arguments.from, ignored);
   if (arguments.of_run() && !folder) {
-    throw InputError(
-        fmt::format("{}: --aligned, --errors, --evo and --rpg are of a run; expected its folder", arguments.from));
+    throw InputError(fmt::format("{}: --aligned, --errors, --evo, --rpg and --at are of a run; expected its folder",
+                                 arguments.from));
   }
   if (folder && !std::filesystem::exists(arguments.from + "/metrics.json")) {
     throw InputError(fmt::format("{}: has no metrics.json; expected the folder of a run", arguments.from));
@@ -115,10 +122,39 @@ void export_run(const ExportArguments& arguments) {
   folder.commit();
 }
 
+/// Aligned as the run was scored, if it has ground truth.
+void export_samples(const ExportArguments& arguments) {
+  const RunEstimate estimate = read_run_estimate(arguments.from, arguments.causal);
+  if (estimate.poses.empty()) throw InputError(fmt::format("{}: the run has no trajectory", arguments.from));
+  Similarity alignment;
+  double offset = 0.0;
+  const bool is_scored = std::filesystem::exists(arguments.from + "/groundtruth.tum");
+  if (is_scored) {
+    const Scores scores =
+        score_estimate(arguments.from, arguments.causal, protocol_of_run(arguments.from), read_record(arguments.from))
+            .scores;
+    alignment = scores.alignment.transform;
+    offset = scores.options.time_offset;
+  }
+  const std::vector<double> times = read_times(arguments.at);
+  const PoseSamples samples = sample_poses(estimate, alignment, offset, times, arguments.velocity);
+  write_file(arguments.out, samples.text);
+  fmt::print(stderr, "remark: {}{}\n",
+             is_scored ? "aligned as the run was scored" : "no ground truth: in the back-end's own world and scale",
+             !arguments.velocity    ? ""
+             : samples.own_velocity ? "; velocities as the back-end states them"
+                                    : "; velocities by differentiation of the poses");
+  if (samples.left_out > 0) {
+    fmt::print(stderr, "remark: {} of {} times are left out: the estimate does not cover them\n", samples.left_out,
+               times.size());
+  }
+}
+
 void execute(const ExportArguments& arguments, const Plugins& plugins) {
   check(arguments);
   const bool folder = std::filesystem::is_directory(arguments.from);
-  if (arguments.of_run()) export_run(arguments);
+  if (arguments.of_scores()) export_run(arguments);
+  if (!arguments.at.empty()) export_samples(arguments);
   if (arguments.of_source()) {
     export_source(folder ? arguments.from + "/config.json" : arguments.from, arguments, plugins);
   }
@@ -154,6 +190,17 @@ void add_export(CLI::App& app, const Plugins& plugins) {
       ->add_option("--rpg", arguments->rpg,
                    "A folder for rpg_trajectory_evaluation: the estimate, the ground truth, the alignment")
       ->type_name("DIR");
+  auto* at = command
+                 ->add_option("--at", arguments->at,
+                              "Its poses at the times in this file, one a line [s]: t x y z qx qy qz qw, aligned if it "
+                              "has ground truth")
+                 ->type_name("TIMES");
+  command
+      ->add_flag(
+          "--velocity", arguments->velocity,
+          "With --at: also the linear velocity in the camera's frame, vx vy vz, as the EvSLAM benchmark takes it")
+      ->needs(at);
+  command->add_option("--out", arguments->out, "File for --at")->type_name("FILE")->capture_default_str()->needs(at);
   add_causal_flag(*command, arguments->causal, "The causal poses, as first published, not the final ones");
   add_overrides(*command, arguments->overrides, "Override a value of the config: KEY=VALUE, e.g. seed=3");
   command->add_flag("--force", arguments->force, "Replace files that exist");

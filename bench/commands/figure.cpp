@@ -14,8 +14,8 @@
 #include "bench/commands/number_check.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/commands/run_selection.hpp"
-#include "bench/common_time.hpp"
 #include "bench/figures/run_figures.hpp"
+#include "bench/scores_by_protocol.hpp"
 #include "core/io/atomic_file.hpp"
 #include "eval/table.hpp"
 

@@ -2,14 +2,17 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/name_check.hpp"
 #include "bench/experiment.hpp"
 #include "core/events/formats.hpp"
 #include "core/plugin/registry.hpp"
 #include "core/support/error.hpp"
 #include "core/support/json.hpp"
+#include "eval/protocols.hpp"
 
 namespace evbench {
 namespace {
@@ -40,14 +43,24 @@ bool describe(const Plugins& plugins, const std::string& kind, const std::string
 }  // namespace
 
 void add_list(CLI::App& app, const Plugins& plugins) {
-  CLI::App* command = app.add_subcommand("list", "List sources, front-ends, back-ends and formats of events");
-  command->callback([&plugins] {
+  auto what = std::make_shared<std::string>();
+  CLI::App* command =
+      app.add_subcommand("list", "List sources, front-ends, back-ends, formats of events and protocols of scores");
+  command->add_option("what", *what, "protocols: how each of them scores, and who publishes by it")
+      ->check(one_of({"protocols"}));
+  command->callback([what, &plugins] {
+    if (*what == "protocols") {
+      fmt::print("{}", describe_protocols());
+      return;
+    }
     list<Source>(plugins);
     list<FrontEnd>(plugins);
     list<BackEnd>(plugins);
     fmt::print("formats of events:\n");
     for (const EventFormat& format : event_formats()) fmt::print("  {:<20} {}\n", format.name, format.description);
     fmt::print("  {:<20} {}\n", "config", "JSON config of evbench: the events of its source");
+    fmt::print("protocols of scores:\n");
+    for (const NamedProtocol& protocol : named_protocols()) fmt::print("  {:<20} {}\n", protocol.name, protocol.source);
   });
 }
 

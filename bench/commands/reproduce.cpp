@@ -28,26 +28,6 @@ struct ReproduceArguments {
   RunArguments run;
 };
 
-constexpr const char* kConfigs = "configs/paper";
-
-/// The folder with the configs: that of the repository if it is the working folder, else the installed one.
-std::string find_folder(const std::string& asked) {
-  std::error_code error;
-  if (!asked.empty()) {
-    if (fs::is_directory(asked, error)) return asked;
-    throw InputError(fmt::format("{}: there is no such folder; expected one with configs, and published.json", asked));
-  }
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const std::string installed = program.parent_path().parent_path() / "share/evbench" / kConfigs;
-  for (const std::string& folder : {std::string(kConfigs), installed}) {
-    if (fs::is_directory(folder, error)) return folder;
-  }
-  throw InputError(
-      fmt::format("{}: there is no such folder here, and no {}. The paper's configs are in evbench's repository: "
-                  "expected its folder as the working folder, or --configs REPOSITORY/{}",
-                  kConfigs, installed, kConfigs));
-}
-
 /// All configs of the folder by name, or those asked for.
 std::vector<std::string> find_configs(const ReproduceArguments& arguments) {
   std::vector<std::string> known;
@@ -63,8 +43,20 @@ std::vector<std::string> find_configs(const ReproduceArguments& arguments) {
   return arguments.names.empty() ? known : arguments.names;
 }
 
+/// The runs of each sequence of the benchmark beside other systems' numbers.
+void print_sequences(const PublishedBenchmark& benchmark, const std::vector<RunRecord>& runs, TableFormat format) {
+  for (const std::string& sequence : benchmark.sequences) {
+    std::vector<RunRecord> of_one;
+    std::ranges::copy_if(runs, std::back_inserter(of_one),
+                         [&](const RunRecord& run) { return sequence_in(benchmark, run) == sequence; });
+    if (of_one.empty()) continue;
+    fmt::print("\n{}",
+               published_sequence_table(benchmark, sequence, std::move(of_one), format, {.width = text_width()}));
+  }
+}
+
 int execute(ReproduceArguments& arguments, Plugins& plugins) {
-  arguments.configs = find_folder(arguments.configs);
+  arguments.configs = find_paper_configs(arguments.configs);
   const std::vector<std::string> names = find_configs(arguments);
   const Published published = read_published(arguments.configs + "/published.json");
   std::vector<RunRecord> runs;
@@ -88,6 +80,7 @@ int execute(ReproduceArguments& arguments, Plugins& plugins) {
   const auto format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
   fmt::print("{}{}", arguments.run.quiet ? "" : "\n",
              published_table(published, runs, format, {.width = text_width()}));
+  if (published.benchmark) print_sequences(*published.benchmark, runs, format);
   throw_together(failures);
   return exit_code;
 }

@@ -8,12 +8,14 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/protocol_option.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/commands/run_selection.hpp"
-#include "bench/common_time.hpp"
 #include "bench/run_folder.hpp"
 #include "bench/run_index.hpp"
+#include "bench/scores_by_protocol.hpp"
 #include "core/support/interruption.hpp"
+#include "eval/protocols.hpp"
 #include "eval/table.hpp"
 
 namespace evbench {
@@ -21,12 +23,13 @@ namespace {
 
 struct ScoreArguments {
   std::vector<std::string> folders;
-  std::string config;
+  std::string config, protocol;
   std::vector<std::string> overrides;
   bool quiet = false;
 };
 
 ScoreOptions protocol_of(const std::string& folder, const ScoreArguments& arguments) {
+  if (!arguments.protocol.empty()) return options_by_protocol(arguments.protocol, protocol_of_run(folder));
   return arguments.config.empty() ? protocol_of_run(folder, arguments.overrides)
                                   : read_evaluation(arguments.config, Json(), arguments.overrides, "");
 }
@@ -67,6 +70,8 @@ void add_score(CLI::App& app) {
   add_folders(*command, arguments->folders);
   command->add_option("--config", arguments->config, "Take the protocol from this config, not from each run's own")
       ->type_name("FILE");
+  add_protocol_name(*command, arguments->protocol, "Score by a published protocol: evbench list protocols")
+      ->excludes("--config");
   add_overrides(*command, arguments->overrides,
                 "Override a value of the protocol: evaluation.KEY=VALUE, e.g. evaluation.alignment=se3");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");

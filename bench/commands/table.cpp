@@ -6,16 +6,18 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/number_check.hpp"
+#include "bench/commands/protocol_option.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/commands/run_selection.hpp"
-#include "bench/common_time.hpp"
+#include "bench/published.hpp"
+#include "bench/scores_by_protocol.hpp"
 
 namespace evbench {
 namespace {
 
 struct TableArguments {
   RunSelection runs;
-  std::string format = "text";
+  std::string format = "text", protocol, published;
   TextOutput out;
   bool list_metrics = false;
   TableOptions options;
@@ -30,7 +32,15 @@ void execute(const TableArguments& arguments) {
   TableOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
   use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
-    if (shows_common_time(options, runs.size())) score_common_time(runs, options.causal);
+    if (!arguments.published.empty()) {
+      const Published published = read_published(find_paper_configs("") + "/published.json");
+      if (!published.benchmark) throw InputError("published.json has no \"benchmark\"");
+      arguments.out.write(
+          published_sequence_table(*published.benchmark, arguments.published, runs, options.format, options.layout));
+      return;
+    }
+    if (!arguments.protocol.empty()) score_by_protocol(runs, arguments.protocol);
+    if (shows_common_time(options, runs.size())) score_common_time(runs, options.causal, arguments.protocol);
     arguments.out.write(make_table(runs, options));
   });
 }
@@ -53,6 +63,14 @@ void add_table(CLI::App& app) {
                   "Columns, e.g. ate.trans_m.rmse,rpe.trans_m.median,runtime_s; also key, folder and status");
   add_wide(*command, arguments->options.layout, arguments->options.folders);
   command->add_flag("--body", arguments->options.layout.body, "LaTeX: only the tabular, without float and caption");
+  add_protocol_name(*command, arguments->protocol,
+                    "Score by a published protocol (evbench list protocols) for this table; the runs stay as they are");
+  command
+      ->add_option(
+          "--published", arguments->published,
+          "Put these runs beside the numbers that other systems published of this sequence of the Event-Camera "
+          "Dataset, each by its own protocol")
+      ->type_name("SEQUENCE");
   add_list_option(*command, "--over", arguments->options.over,
                   "Summarise over these columns: one row for all runs that differ only in these, e.g. seed, or "
                   "seed,experiment",

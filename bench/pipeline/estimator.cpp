@@ -28,6 +28,16 @@ PoseTrajectory sample(const BackEnd& backend, double rate) {
   return PoseTrajectory(std::move(poses), "the back-end's trajectory");
 }
 
+/// The back-end's own velocities at the poses, if it has any.
+std::vector<StampedVelocity> velocities_at(const BackEnd& backend, const PoseTrajectory& trajectory) {
+  std::vector<StampedVelocity> result;
+  for (const StampedPose& pose : trajectory.poses()) {
+    const std::optional<Vector6> velocity = backend.velocity(pose.t);
+    if (velocity && velocity->allFinite()) result.push_back({pose.t, *velocity});
+  }
+  return result;
+}
+
 bool is_finite(const StampedPose& pose) { return pose.T.p.allFinite() && pose.T.q.coeffs().allFinite(); }
 
 /// Evenly distributed poses of the trajectory.
@@ -94,6 +104,7 @@ std::optional<TrajectorySegment> Estimator::segment(double rate) {
     result.final_trajectory = result.final_trajectory.cut(result.final_trajectory.start(), its_status.time);
   }
   if (result.final_trajectory.empty() || its_status.state == RunState::failed) return std::nullopt;
+  result.velocities = velocities_at(*backend, result.final_trajectory);
   // Poses after the loss are not supported by data.
   if (its_status.state == RunState::lost) {
     const auto after_loss = [&](const CausalPose& pose) { return pose.t > its_status.time; };

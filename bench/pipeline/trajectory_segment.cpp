@@ -30,6 +30,11 @@ void append(TrajectorySegment& segment, TrajectorySegment later, const Similarit
     if (pose.t > end) poses.push_back({pose.t, transform * pose.T});
   }
   segment.final_trajectory = PoseTrajectory(std::move(poses), "the back-ends' trajectory");
+  for (StampedVelocity velocity : later.velocities) {
+    if (!(velocity.t > end)) continue;
+    velocity.velocity.tail<3>() *= transform.scale;
+    segment.velocities.push_back(velocity);
+  }
   segment.published.insert(segment.published.end(), published.begin(), published.end());
   segment.causal_trajectory = newest_poses(segment.published);
   std::map<TrackId, Vector3> map;

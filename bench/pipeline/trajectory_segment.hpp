@@ -8,6 +8,7 @@
 #include "core/data/problem.hpp"
 #include "core/data/relative_poses.hpp"
 #include "core/geometry/similarity.hpp"
+#include "core/motion/body_velocities.hpp"
 #include "core/motion/pose_trajectory.hpp"
 
 namespace evbench {
@@ -15,9 +16,10 @@ namespace evbench {
 /// Part of the estimate in one world frame and scale: the estimate of one back-end until it was lost or the run ended,
 /// followed by those of later back-ends that were relocalised in its world.
 struct TrajectorySegment {
-  PoseTrajectory final_trajectory;    ///< smoothed estimate at the rate of the run; no poses while lost
-  PoseTrajectory causal_trajectory;   ///< poses as first published, at the back-end's own times
-  std::vector<CausalPose> published;  ///< all published poses, known_at set
+  PoseTrajectory final_trajectory;          ///< smoothed estimate at the rate of the run; no poses while lost
+  std::vector<StampedVelocity> velocities;  ///< at its poses' times, if the back-end has velocities
+  PoseTrajectory causal_trajectory;         ///< poses as first published, at the back-end's own times
+  std::vector<CausalPose> published;        ///< all published poses, known_at set
   std::vector<Landmark> map;
   /// The final problem of the back-end, if it has that form; of several back-ends, that of the first.
   std::optional<Problem> problem;

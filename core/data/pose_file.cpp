@@ -239,7 +239,12 @@ PoseFile read_poses(const std::string& path, const PoseFileOptions& options) {
   if (const auto text = assumption(reader, named.has_value(), columns, times, options); !text.empty()) {
     file.remarks.push_back(text);
   }
+  constexpr std::size_t kVelocity = 8;  // column
+  if (options.velocities && columns.size() != kVelocity + 3) {
+    reader.fail(fmt::format("has {} columns; expected t, position, quaternion and vx vy vz", columns.size()));
+  }
   std::vector<StampedPose> poses;
+  std::vector<StampedVelocity> velocities;
   std::string first_repeated;
   std::int64_t repeated = 0;
   for (; !reader.columns().empty(); reader.next()) {
@@ -252,6 +257,10 @@ PoseFile read_poses(const std::string& path, const PoseFileOptions& options) {
     }
     if (poses.empty() || t > poses.back().t) {
       poses.push_back({t, T});
+      if (options.velocities) {
+        velocities.push_back({t, Vector6::Zero()});
+        velocities.back().velocity.tail<3>() = read_vector3(reader, consecutive<3>(kVelocity), "the velocity");
+      }
     } else if (repeated++ == 0) {
       first_repeated = reader.place();
     }
@@ -264,15 +273,19 @@ PoseFile read_poses(const std::string& path, const PoseFileOptions& options) {
                                        repeated, repeated == 1 ? "" : "s", first_repeated));
   }
   file.trajectory = PoseTrajectory(std::move(poses), path);
+  file.velocities = BodyVelocities(std::move(velocities));
   return file;
 }
 
 void set_time_unit(PoseFile& file, TimeUnit unit) {
-  std::vector<StampedPose> poses = std::move(file.trajectory).poses();
-  for (StampedPose& pose : poses) pose.t /= per_second(unit);
-  const auto same_time = [](const StampedPose& a, const StampedPose& b) { return a.t == b.t; };
-  poses.erase(std::unique(poses.begin(), poses.end(), same_time), poses.end());
-  file.trajectory = PoseTrajectory(std::move(poses));
+  const auto in_seconds = [&](auto stamped) {
+    for (auto& one : stamped) one.t /= per_second(unit);
+    const auto same_time = [](const auto& a, const auto& b) { return a.t == b.t; };
+    stamped.erase(std::unique(stamped.begin(), stamped.end(), same_time), stamped.end());
+    return stamped;
+  };
+  file.trajectory = PoseTrajectory(in_seconds(std::move(file.trajectory).poses()));
+  file.velocities = BodyVelocities(in_seconds(file.velocities.all()));
   file.unknown_unit.clear();
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/data/time_unit.hpp"
+#include "core/motion/body_velocities.hpp"
 #include "core/motion/pose_trajectory.hpp"
 
 namespace evbench {
@@ -26,11 +27,13 @@ struct PoseFileOptions {
   TimeUnit time_unit = TimeUnit::unsaid;
   std::string times = {};      ///< path of a file with one time per line, for poses without times; empty: none
   bool may_number = false;     ///< poses without times get the times 0, 1, ...; otherwise they are refused
+  bool velocities = false;     ///< three further columns hold the linear velocity; otherwise none is read
   bool may_lack_unit = false;  ///< times of unknown unit are returned unchanged; otherwise they are refused
 };
 
 struct PoseFile {
   PoseTrajectory trajectory;
+  BodyVelocities velocities;         ///< at its poses, if requested; without angular velocities, which are zero
   std::vector<std::string> remarks;  ///< sentences: assumptions and omissions
   bool numbered = false;             ///< times are the numbers of the poses
   std::string unknown_unit = {};     ///< why the unit of the times is unknown (they are unchanged); empty: seconds
@@ -43,6 +46,7 @@ struct PoseFile {
 ///   tum       t px py pz qx qy qz qw, further columns are not read. The Event-Camera Dataset's groundtruth.txt.
 ///   euroc     t px py pz qw qx qy qz, likewise; recognised by its names, by 17 columns, or by commas and nanoseconds
 ///             since 1970, as VINS writes it
+///             With the option `velocities` either is followed by vx vy vz [m/s] and nothing else.
 ///   kitti     r11 r12 r13 px r21 r22 r23 py r31 r32 r33 pz, optionally followed by the row 0 0 0 1 or preceded by t
 ///   robotevt  t r11 r12 r13 r21 ... r33 px py pz
 ///

@@ -1,4 +1,4 @@
-#include "bench/common_time.hpp"
+#include "bench/scores_by_protocol.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -10,6 +10,7 @@
 #include "core/support/error.hpp"
 #include "core/support/index.hpp"
 #include "core/support/parallel.hpp"
+#include "eval/protocols.hpp"
 #include "eval/run_columns.hpp"
 #include "eval/score_run.hpp"
 
@@ -37,10 +38,15 @@ TimeRange common_time(const std::vector<RunRecord*>& runs, bool causal) {
   return common;
 }
 
-Json score_within(const TimeRange& range, const RunRecord& run, bool causal) {
+ScoreOptions options_of(const RunRecord& run, const std::string& protocol) {
+  const ScoreOptions own = protocol_of_run(run.folder);
+  return protocol.empty() ? own : options_by_protocol(protocol, own);
+}
+
+Json score_within(const TimeRange& range, const RunRecord& run, bool causal, const std::string& protocol) {
   if (own_scores(run, causal).is_null()) return nullptr;
   try {
-    ScoreOptions options = protocol_of_run(run.folder);
+    ScoreOptions options = options_of(run, protocol);
     const bool limited = options.time_range.size() == 2;
     const TimeRange asked = limited ? TimeRange{options.time_range[0], options.time_range[1]} : TimeRange{};
     const TimeRange time = both(asked, range);
@@ -51,9 +57,31 @@ Json score_within(const TimeRange& range, const RunRecord& run, bool causal) {
   }
 }
 
+/// Rethrows the first error, by index.
+template <class Do>
+void for_each_in_parallel(std::size_t count, const Do& act) {
+  std::vector<std::exception_ptr> errors(count);
+  parallel_for(0, static_cast<int>(count), [&](int i) {
+    try {
+      act(index(i));
+    } catch (...) {
+      errors[index(i)] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
 }  // namespace
 
-void score_common_time(std::span<RunRecord> runs, bool causal) {
+void score_by_protocol(std::span<RunRecord> runs, const std::string& protocol) {
+  for_each_in_parallel(runs.size(), [&](std::size_t i) {
+    if (runs[i].done) score_run(runs[i].folder, options_of(runs[i], protocol), runs[i]);
+  });
+}
+
+void score_common_time(std::span<RunRecord> runs, bool causal, const std::string& protocol) {
   std::map<std::pair<std::string, std::string>, std::vector<RunRecord*>> sequences;
   for (RunRecord& run : runs) sequences[{run.experiment, sequence_of(run)}].push_back(&run);
   std::vector<std::pair<RunRecord*, TimeRange>> work;
@@ -64,18 +92,10 @@ void score_common_time(std::span<RunRecord> runs, bool causal) {
       if (common.from < common.to) work.emplace_back(run, common);
     }
   }
-  std::vector<std::exception_ptr> errors(work.size());
-  parallel_for(0, static_cast<int>(work.size()), [&](int i) {
-    auto& [run, common] = work[index(i)];
-    try {
-      run->common_scores = score_within(common, *run, causal);
-    } catch (...) {
-      errors[index(i)] = std::current_exception();
-    }
+  for_each_in_parallel(work.size(), [&](std::size_t i) {
+    auto& [run, common] = work[i];
+    run->common_scores = score_within(common, *run, causal, protocol);
   });
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
 }
 
 }  // namespace evbench
