@@ -60,7 +60,7 @@ std::vector<Cell> metric_cells(const TableRuns& runs, const Metric& metric, bool
     if (!value) {
       cells.push_back({csv ? "" : "-"});
     } else {
-      cells.push_back({csv ? fmt::format("{}", *value) : fmt::format("{:.{}f}", *value, decimals)});
+      cells.push_back({csv ? fmt::format("{}", *value) : fmt::format("{:.{}f}", *value, decimals), false, "", *value});
     }
   }
   if (!csv) {
@@ -137,8 +137,9 @@ TextTable run_table(const TableRuns& runs, const TableOptions& options) {
   add_names(table, runs, options);
   for (const Metric& metric : runs.metrics) {
     add_column(table, csv ? metric.key : header_of(metric, options.format), true, metric_cells(runs, metric, csv),
-               rank_of(metric, options));
+               rank_of(metric, options), metric.key);
   }
+  for (std::size_t i = 0; i < runs.runs.size(); ++i) table.runs.push_back({i});
   const bool print = options.format == TableFormat::latex;
   if (!print || !all_fine(runs) || asks_for(options, "status")) {
     std::vector<Cell> cells;

@@ -110,6 +110,7 @@ void add_metric(TextTable& table, const std::vector<Group>& rows, const TableRun
     cells.push_back({"-"});
     if (!q) continue;
     cells.back().text = number_text(metric.factor * q->median, decimals);
+    if (std::isfinite(q->median)) cells.back().value = metric.factor * q->median;
     const bool all_fail = std::isinf(q->lower) && q->lower == q->upper;
     if (all_fail || rows[cells.size() - 1].size() == 1) continue;
     cells.back().detail = fmt::format("[{}, {}]", number_text(metric.factor * q->lower, decimals),
@@ -120,7 +121,7 @@ void add_metric(TextTable& table, const std::vector<Group>& rows, const TableRun
     for (const std::size_t r : of_one) groups.push_back(rows[r]);
     if (const auto best = distinguished(groups, runs, metric, data)) cells[of_one[*best]].best = true;
   }
-  add_column(table, header_of(metric, options.format), true, std::move(cells), rank_of(metric, options));
+  add_column(table, header_of(metric, options.format), true, std::move(cells), rank_of(metric, options), metric.key);
 }
 
 void add_metric_csv(TextTable& table, const std::vector<Group>& rows, const TableRuns& runs, const Metric& metric) {
@@ -281,6 +282,7 @@ TextTable summary_table(const TableRuns& runs, const TableOptions& options) {
   const std::vector<std::size_t> data = number_data(runs.runs);
   TextTable table;
   table.rows.resize(rows.size());
+  table.runs = rows;
   add_names(table, rows, columns, csv);
   add_success(table, rows, runs, csv);
   if (options.success > 0.0) add_follows_truth(table, rows, runs, options, csv);

@@ -61,8 +61,8 @@ int decimals_of(const std::vector<std::optional<double>>& values) {
 }
 
 void add_column(TextTable& table, const std::string& header, bool number, std::vector<TextTable::Cell> cells,
-                std::size_t rank) {
-  table.columns.push_back({header, number, rank});
+                std::size_t rank, const std::string& key) {
+  table.columns.push_back({header, number, rank, key});
   for (std::size_t i = 0; i < cells.size(); ++i) table.rows[i].push_back(std::move(cells[i]));
 }
 
@@ -185,12 +185,9 @@ TableOptions over_what_varies(TableOptions options, const std::vector<RunColumn>
 
 }  // namespace
 
-std::string make_table(std::span<const RunRecord> found, const TableOptions& requested) {
-  if (found.empty()) throw InputError("there is no run to make a table of");
-  const TableOptions options = over_what_varies(requested, run_columns(found));
-  const bool print = options.format == TableFormat::latex;
-  const std::vector<RunRecord> shortened = print ? without_folders(found) : std::vector<RunRecord>();
-  const std::span<const RunRecord> runs = print ? shortened : found;
+namespace {
+
+TableRuns collect(std::span<const RunRecord> runs, const TableOptions& options) {
   TableRuns all;
   all.runs = numbers_of(runs, options.causal);
   all.protocols = collect_protocols(all.runs);
@@ -199,7 +196,10 @@ std::string make_table(std::span<const RunRecord> found, const TableOptions& req
   }
   all.metrics = choose_metrics(all.runs, options);
   all.columns = run_columns(runs);
-  if (options.format == TableFormat::long_csv) return long_table(all, options);
+  return all;
+}
+
+TextTable cells_and_notes(const TableRuns& all, std::span<const RunRecord> runs, const TableOptions& options) {
   TextTable table = options.over.empty() ? run_table(all, options) : summary_table(all, options);
   table.experiments = distinct_experiments(all);
   if (table.experiments.size() == 1 && options.format != TableFormat::latex) {
@@ -211,7 +211,30 @@ std::string make_table(std::span<const RunRecord> found, const TableOptions& req
                     "common.ate.trans_m.rmse,...",
                     kCommonTimeRuns));
   }
-  return format_table(table, options.format, options.layout);
+  return table;
+}
+
+void require_runs(std::span<const RunRecord> runs) {
+  if (runs.empty()) throw InputError("there is no run to make a table of");
+}
+
+}  // namespace
+
+std::string make_table(std::span<const RunRecord> found, const TableOptions& requested) {
+  require_runs(found);
+  const TableOptions options = over_what_varies(requested, run_columns(found));
+  const bool print = options.format == TableFormat::latex;
+  const std::vector<RunRecord> shortened = print ? without_folders(found) : std::vector<RunRecord>();
+  const std::span<const RunRecord> runs = print ? shortened : found;
+  const TableRuns all = collect(runs, options);
+  if (options.format == TableFormat::long_csv) return long_table(all, options);
+  return format_table(cells_and_notes(all, runs, options), options.format, options.layout);
+}
+
+TextTable text_table(std::span<const RunRecord> runs, const TableOptions& requested) {
+  require_runs(runs);
+  const TableOptions options = over_what_varies(requested, run_columns(runs));
+  return cells_and_notes(collect(runs, options), runs, options);
 }
 
 }  // namespace evbench

@@ -74,6 +74,10 @@ struct TableOptions {
 /// differ, or if two runs of a row have the same seed (or other value of `over`) but are not the same job.
 std::string make_table(std::span<const RunRecord> runs, const TableOptions& options);
 
+/// The same table before it is formatted, all its columns, with the runs of its rows. Not for "long".
+struct TextTable;
+TextTable text_table(std::span<const RunRecord> runs, const TableOptions& options);
+
 /// A line for each number that any of the runs has: its key for TableOptions::metrics, and its header.
 std::string list_metrics(std::span<const RunRecord> runs);
 

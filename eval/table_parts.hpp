@@ -38,7 +38,7 @@ int decimals_of(const std::vector<std::optional<double>>& values);
 std::vector<std::string> run_names(const std::vector<RunColumn>& columns);
 
 void add_column(TextTable& table, const std::string& header, bool number, std::vector<TextTable::Cell> cells,
-                std::size_t rank = 0);
+                std::size_t rank = 0, const std::string& key = "");
 
 /// The column of a metric: its header in this format, and its rank (TextTable::Column). Requested columns are never
 /// left out.

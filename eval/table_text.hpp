@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,16 +14,19 @@ struct TextTable {
     std::string header;
     bool number = true;    ///< numbers align right
     std::size_t rank = 0;  ///< columns of the highest rank are left out first if not all fit; 0: never left out
+    std::string key = {};  ///< of the metric; empty: it is none
   };
   struct Cell {
     std::string text;
-    bool best = false;        ///< of the text
-    std::string detail = {};  ///< printed after the text, small in LaTeX
+    bool best = false;                 ///< of the text
+    std::string detail = {};           ///< printed after the text, small in LaTeX
+    std::optional<double> value = {};  ///< of the text, unrounded; none: it is no number
   };
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;
-  std::vector<std::string> notes;        ///< one per line
-  std::vector<std::string> experiments;  ///< experiments of the runs
+  std::vector<std::vector<std::size_t>> runs;  ///< of each row, by index; empty where rows are not of runs
+  std::vector<std::string> notes;              ///< one per line
+  std::vector<std::string> experiments;        ///< experiments of the runs
 };
 
 /// Formats a table; characters with a meaning in the format are escaped. LaTeX is a float with a label and the notes in

@@ -22,6 +22,7 @@ void add_commands(CLI::App& app, Plugins& plugins, int& exit_code) {
   add_convert(app, plugins);
   add_dataset(app);
   add_render(app, plugins);
+  add_report(app);
   add_new_config(app, plugins);
   add_new_plugin(app, plugins);
   add_check_plugin(app, plugins, exit_code);

@@ -27,6 +27,7 @@ void add_info(CLI::App& app, const Plugins& plugins);
 void add_convert(CLI::App& app, const Plugins& plugins);
 void add_dataset(CLI::App& app);
 void add_render(CLI::App& app, const Plugins& plugins);
+void add_report(CLI::App& app);
 void add_new_config(CLI::App& app, const Plugins& plugins);
 void add_new_plugin(CLI::App& app, const Plugins& plugins);
 

@@ -17,6 +17,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/exit_code.hpp"
 #include "bench/commands/progress_line.hpp"
+#include "bench/commands/report.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/commands/run_selection.hpp"
 #include "bench/plugins.hpp"
@@ -275,6 +276,10 @@ int run_config(const RunArguments& arguments, Plugins& plugins, std::vector<RunR
     throw;
   }
   print_table(runs, arguments, experiment.name);
+  if (arguments.report) {
+    report_folder((std::filesystem::path(arguments.out) / experiment.name).string(), "evbench run " + arguments.config,
+                  arguments.quiet);
+  }
   if (records != nullptr) records->insert(records->end(), runs.records().begin(), runs.records().end());
   const bool failed = std::ranges::any_of(
       runs.records(), [](const RunRecord& run) { return run.status && run.status->status.state == RunState::failed; });
@@ -317,6 +322,8 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
       "--tracks", arguments->tracks,
       "Also write tracks.txt and track_ends.txt: the tracks of the front-end, for evbench render and the front-end "
       "recorded");
+  command->add_flag("--report", arguments->report,
+                    "Also write OUT/EXPERIMENT/report.html: a page of all runs there (evbench report)");
   command->add_flag("--watch", arguments->watch,
                     "Print a line each second, on the standard error: time, tracks, landmarks, states, delay, "
                     "real-time factor");

@@ -17,6 +17,7 @@ struct RunArguments {
   bool check = false;
   bool problem = false, tracks = false, watch = false;
   bool force = false;
+  bool report = false;
   int jobs = 1;  ///< runs at a time; more than one: each in a process of its own
 };
 

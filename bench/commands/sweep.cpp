@@ -15,6 +15,7 @@
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/number_check.hpp"
 #include "bench/commands/progress_line.hpp"
+#include "bench/commands/report.hpp"
 #include "bench/plugins.hpp"
 #include "bench/run_folder.hpp"
 #include "bench/sweep/local_executor.hpp"
@@ -37,7 +38,7 @@ struct SweepArguments {
   std::optional<int> at_a_time;
   SlurmOptions slurm;
   std::string executor = "local";
-  bool dry_run = false, quiet = false;
+  bool dry_run = false, quiet = false, report = false;
 };
 
 void print_plan(const std::vector<PlannedRun>& runs, const SweepPlan& plan, const ExecutorOptions& options) {
@@ -161,7 +162,11 @@ int execute(SweepArguments& arguments, Plugins& plugins) {
   std::filesystem::create_directories(folder, error);
   if (error) throw OutputError(fmt::format("{}: can't be made: {}", folder, error.message()));
   write_file(folder + "/sweep.json", dump_json(plan.to_json(), 1) + "\n");
-  if (arguments.executor == "local") return do_locally(runs, arguments, folder, plugins);
+  if (arguments.executor == "local") {
+    const int exit_code = do_locally(runs, arguments, folder, plugins);
+    if (arguments.report) report_folder(folder, "evbench sweep " + arguments.file, arguments.quiet);
+    return exit_code;
+  }
   const std::vector<PlannedRun> left = runs_to_do(runs, plugins, options);
   return arguments.executor == "slurm" ? submit(left, arguments, folder) : write_manifest(left, arguments, folder);
 }
@@ -192,6 +197,8 @@ void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
   command->add_option("--memory", arguments->memory_mib, "Memory limit of a run [MiB]; 0: none")->check(not_negative());
   command->add_flag("--retry-failed", arguments->options.retry_failed,
                     "Repeat runs that crashed, hung or exceeded a limit, and damaged ones");
+  command->add_flag("--report", arguments->report,
+                    "local: also write OUT/NAME/report.html: a page of all its runs (evbench report)");
   command->add_flag(
       "--dry-run", arguments->dry_run,
       "Only print the plan and which of its runs are complete; loads no library that only the files name");

@@ -12,15 +12,25 @@ constexpr std::size_t kColumns = 3;  ///< of panels, at most, as names are at th
 
 /// A method's runs under one metric.
 struct Row {
-  std::vector<double> values;  ///< of the runs that did not fail
-  std::string failures;        ///< how many did, on one line by no-break spaces; empty: none
+  std::vector<double> values;                  ///< of the runs that did not fail
+  std::vector<std::vector<std::size_t>> runs;  ///< of each of these, itself
+  std::string failures;                        ///< how many failed, on one line by no-break spaces; empty: none
 };
 
 Row row_of(const Method& method, const FigureRuns& all, const Metric& metric) {
-  Row row{values_of(method.runs, all.runs, metric), ""};
-  const std::size_t counted = row.values.size();
-  const std::size_t failed = std::erase_if(row.values, [](double value) { return std::isinf(value); });
-  for (double& value : row.values) value *= metric.factor;
+  Row row;
+  std::size_t counted = 0, failed = 0;
+  for (const std::size_t run : method.runs) {
+    for (const double value : values_of({run}, all.runs, metric)) {
+      ++counted;
+      if (std::isinf(value)) {
+        ++failed;
+        continue;
+      }
+      row.values.push_back(metric.factor * value);
+      row.runs.push_back({run});
+    }
+  }
   if (failed > 0) row.failures = fmt::format("({}\u00a0of\u00a0{}\u00a0fail)", failed, counted);
   return row;
 }
@@ -57,7 +67,11 @@ Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options)
       }
       drawn.back().insert(drawn.back().end(), row.values.begin(), row.values.end());
       if (!row.values.empty()) {
-        panel.marks.push_back({Mark::Kind::box, m, {static_cast<double>(m)}, std::move(row.values)});
+        panel.marks.push_back({.kind = Mark::Kind::box,
+                               .series = m,
+                               .x = {static_cast<double>(m)},
+                               .y = std::move(row.values),
+                               .runs = std::move(row.runs)});
       }
     }
     figure.panels.push_back(std::move(panel));

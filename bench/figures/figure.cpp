@@ -31,6 +31,7 @@ Json to_json(const Mark& mark) {
   json["y"] = numbers(mark.y);
   json["low"] = numbers(mark.low);
   json["high"] = numbers(mark.high);
+  if (!mark.runs.empty()) json["runs"] = mark.runs;
   return json;
 }
 
@@ -61,25 +62,6 @@ std::size_t legend_columns(const Figure& figure) {
   return std::max(std::size_t{1}, static_cast<std::size_t>(figure.width_mm / width));
 }
 
-Json to_json(const Figure& figure) {
-  Json json = {{"width_mm", figure.width_mm},
-               {"height_mm", figure.height_mm},
-               {"columns", figure.columns},
-               {"legend", figure.legend},
-               {"alike", figure.alike},
-               {"caption", figure.caption},
-               {"legend_columns", legend_columns(figure)}};
-  json["series"] = Json::array();
-  std::size_t number = 0;  // of the colour: the truth has none
-  for (const Series& series : figure.series) {
-    json["series"].push_back({{"label", series.label}, {"truth", series.truth}, {"number", number}});
-    number += series.truth ? 0 : 1;
-  }
-  json["panels"] = Json::array();
-  for (const Panel& panel : figure.panels) json["panels"].push_back(to_json(panel));
-  return json;
-}
-
 constexpr double kPatience = 120.0;  ///< [s] for drawing
 
 bool has_matplotlib(const std::string& python) {
@@ -101,6 +83,25 @@ std::string find_python() {
 }
 
 }  // namespace
+
+Json to_json(const Figure& figure) {
+  Json json = {{"width_mm", figure.width_mm},
+               {"height_mm", figure.height_mm},
+               {"columns", figure.columns},
+               {"legend", figure.legend},
+               {"alike", figure.alike},
+               {"caption", figure.caption},
+               {"legend_columns", legend_columns(figure)}};
+  json["series"] = Json::array();
+  std::size_t number = 0;  // of the colour: the truth has none
+  for (const Series& series : figure.series) {
+    json["series"].push_back({{"label", series.label}, {"truth", series.truth}, {"number", number}});
+    number += series.truth ? 0 : 1;
+  }
+  json["panels"] = Json::array();
+  for (const Panel& panel : figure.panels) json["panels"].push_back(to_json(panel));
+  return json;
+}
 
 std::string drawing_script(const Figure& figure) {
   std::string script(figure_script());

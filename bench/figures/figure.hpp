@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/plugin/options.hpp"
+#include "core/support/json_fwd.hpp"
 
 namespace evbench {
 
@@ -28,6 +29,9 @@ struct Mark {
   Kind kind;
   std::size_t series;
   std::vector<double> x, y = {}, low = {}, high = {};  ///< as long as x, where they are used; of a box y has any length
+  /// Of points, steps and failures: the runs behind each x, of a box those behind each y, of a level one list. Empty:
+  /// not known. Pictures do not need them; a report leads from a point to its runs.
+  std::vector<std::vector<std::size_t>> runs = {};
 };
 
 struct PanelAxis {
@@ -57,6 +61,9 @@ struct Figure {
   bool alike = false;  ///< a metre is as long in all panels: on both axes where that is `equal`, else on the y axis
   double width_mm = 174.0, height_mm = 64.0;  ///< of the whole; of the panels alone, names being of one line each
 };
+
+/// The figure as the script has it, and with the runs of its marks. Values that are not finite are null.
+Json to_json(const Figure& figure);
 
 /// The Python script that draws a figure (bench/figures/figure.py), with all data in it. It needs matplotlib alone. Its
 /// arguments are the files to write, .svg, .pdf or .png.

@@ -78,6 +78,7 @@ Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options)
       mark.x.push_back(place.first);
       mark.y.push_back(place.second);
       mark.low.push_back(compare_pairs(paired).ratio);
+      mark.runs.push_back(own);
     }
     if (mark.x.empty())
       throw InputError(fmt::format("no run of \"{}\" has one of \"{}\" on the same data", method.name, base.name));

@@ -73,7 +73,7 @@ std::vector<Mark> draw_method(const Places& places, std::size_t number, const Fi
   if (!places.without.empty()) {
     const Spot spot = spot_of(places.without, all, metric);
     const Quartiles& q = spot.quartiles;
-    marks.push_back({Mark::Kind::level, number, {}, {q.median}, {q.lower}, {q.upper}});
+    marks.push_back({Mark::Kind::level, number, {}, {q.median}, {q.lower}, {q.upper}, {places.without}});
     if (spot.failed > 0) marks.push_back({Mark::Kind::failures, number, {}, {}, {spot.failed}, {spot.runs}});
   }
   Mark curve{Mark::Kind::points, number, {}}, band{Mark::Kind::band, number, {}};
@@ -84,8 +84,10 @@ std::vector<Mark> draw_method(const Places& places, std::size_t number, const Fi
       failures.x.push_back(x);
       failures.low.push_back(spot.failed);
       failures.high.push_back(spot.runs);
+      failures.runs.push_back(runs);
     }
     curve.x.push_back(x);
+    curve.runs.push_back(runs);
     curve.y.push_back(spot.quartiles.median);
     band.low.push_back(spot.quartiles.lower);
     band.high.push_back(spot.quartiles.upper);
