@@ -10,7 +10,7 @@ evbench=build/release/bin/evbench
 echo "== From events to a trajectory: 10 s before a textured wall, simulated"
 "$evbench" run configs/examples/events_to_trajectory.json
 echo "== Table I, simulated: 30 s of a robot arm in front of dots"
-"$evbench" run configs/paper/table1_simulated.json
+"$evbench" run configs/paper/table1_simulated.json --report
 if [ -n "${EVBENCH_DATA:-}" ]; then
   echo "== Table I, real tracks: poster_translation, seconds 0 to 3.05"
   "$evbench" run configs/paper/table1_poster_translation.json
@@ -19,6 +19,7 @@ else
 fi
 
 cat <<'END'
+== Tables, trajectories and figures in a browser: results/table1_simulated/report.html
 == What next:
 export PATH=$PWD/build/release/bin:$PATH
 evbench table results/table1_simulated --format markdown                           # a table for a paper, again
