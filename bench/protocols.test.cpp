@@ -1,11 +1,13 @@
 #include <cmath>
 
 #include "bench/published.hpp"
+#include "bench/reference.hpp"
 #include "bench/testing/configs.hpp"
 #include "bench/testing/program.hpp"
 #include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
+#include "eval/find_runs.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -128,4 +130,24 @@ TEST_CASE("Runs stand beside published numbers of their sequence, each by its ow
     CHECK_THAT(published.out, ContainsSubstring(std::string(protocol) + ",bundle_adjustment,events,"));
   }
   CHECK_THAT(table("--published poster_7dof").err, ContainsSubstring("poster_6dof"));
+}
+
+TEST_CASE("Runs are compared with results that were written before") {
+  const TemporaryFolder folder;
+  REQUIRE(shell(folder, "\"$evbench\" run '" + std::string(EVBENCH_CONFIGS) +
+                            "/examples/simulated_tracks.json' --quiet --out results && \"$evbench\" table results "
+                            "--format csv --out before.csv")
+              .exit_code == 0);
+  const std::vector<RunRecord> runs = find_runs(std::vector{folder.file("results")}, nullptr);
+  const std::string same = compare_with_reference(runs, folder.file("before.csv"));
+  CHECK_THAT(same, ContainsSubstring("1 of 1 runs") && ContainsSubstring("ATE [m]: within 0 %"));
+  std::string text = read_file(folder.file("before.csv"));
+  const double ate = runs[0].final_scores.at("ate").at("trans_m").at("rmse").get<double>();
+  const std::string digits = fmt::format("{}", ate);
+  REQUIRE(text.find(digits) != std::string::npos);
+  folder.write("other.csv", text.replace(text.find(digits), digits.size(), fmt::format("{}", 0.8 * ate)));
+  CHECK_THAT(compare_with_reference(runs, folder.file("other.csv")),
+             ContainsSubstring("ATE [m]: within 25 % (bundle_adjustment, seed 1)"));
+  folder.write("none.csv", "a,b\n1,2\n");
+  CHECK_THROWS_WITH(compare_with_reference(runs, folder.file("none.csv")), ContainsSubstring("none.csv"));
 }

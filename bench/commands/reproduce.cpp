@@ -14,6 +14,7 @@
 #include "bench/commands/run.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/published.hpp"
+#include "bench/reference.hpp"
 #include "core/support/interruption.hpp"
 #include "core/support/nearest.hpp"
 #include "eval/find_runs.hpp"
@@ -55,6 +56,19 @@ void print_sequences(const PublishedBenchmark& benchmark, const std::vector<RunR
   }
 }
 
+/// How far the runs of each experiment are from the results in this repository.
+void print_differences(const std::vector<std::string>& names, const std::vector<RunRecord>& runs) {
+  for (const std::string& name : names) {
+    const std::string csv = fmt::format("results/reference/{}.csv", name);
+    std::vector<RunRecord> of_one;
+    std::ranges::copy_if(runs, std::back_inserter(of_one),
+                         [&](const RunRecord& run) { return run.experiment == name; });
+    std::error_code error;
+    if (of_one.empty() || !fs::is_regular_file(csv, error)) continue;
+    fmt::print("\n{}: {}\n", name, compare_with_reference(of_one, csv));
+  }
+}
+
 int execute(ReproduceArguments& arguments, Plugins& plugins) {
   arguments.configs = find_paper_configs(arguments.configs);
   const std::vector<std::string> names = find_configs(arguments);
@@ -81,6 +95,7 @@ int execute(ReproduceArguments& arguments, Plugins& plugins) {
   fmt::print("{}{}", arguments.run.quiet ? "" : "\n",
              published_table(published, runs, format, {.width = text_width()}));
   if (published.benchmark) print_sequences(*published.benchmark, runs, format);
+  if (!arguments.run.quiet) print_differences(names, runs);
   throw_together(failures);
   return exit_code;
 }
