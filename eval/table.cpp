@@ -71,8 +71,8 @@ std::string header_of(const Metric& metric, TableFormat format) {
 }
 
 std::size_t rank_of(const Metric& metric, const TableOptions& options) {
-  constexpr std::array kFirst = {"ate.trans_m.rmse", "rpe.trans_m.rmse", "coverage",        "realtime_factor",
-                                 "velocity.rve.auc", "ate.rot_deg.rmse", "rpe.rot_deg.rmse"};
+  constexpr std::array kFirst = {"ate.trans_m.rmse", "rpe.trans_m.rmse", "coverage",
+                                 "realtime_factor",  "ate.rot_deg.rmse", "rpe.rot_deg.rmse"};
   if (!options.metrics.empty()) return 0;
   const auto first = std::ranges::find(kFirst, metric.key);
   if (first != kFirst.end()) return index(first - kFirst.begin());
