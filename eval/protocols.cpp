@@ -103,7 +103,7 @@ const std::vector<NamedProtocol>& named_protocols() {
 }
 
 std::vector<std::string> protocol_choices() {
-  std::vector<std::string> names = {""};
+  std::vector<std::string> names = {"none"};
   for (const NamedProtocol& protocol : named_protocols()) names.emplace_back(protocol.name);
   return names;
 }

@@ -18,7 +18,7 @@ struct NamedProtocol {
 };
 const std::vector<NamedProtocol>& named_protocols();
 
-/// Their names, and "" for none.
+/// Their names, after "none".
 std::vector<std::string> protocol_choices();
 
 /// Fills in the options of the protocol that `evaluation` (an object) names, but for those that it gives itself.

@@ -85,7 +85,7 @@ double path_length(const std::vector<PosePair>& pairs) {
 void ScoreOptions::declare(OptionSet& set) {
   set.add("protocol", protocol,
           "a published protocol by name (evbench list protocols): the values of all options here that are not given "
-          "beside it, but for time_offset, time_range, min_pairs and latency; empty: none")
+          "beside it, but for time_offset, time_range, min_pairs and latency")
       .choices(protocol_choices());
   set.add("alignment", alignment, "how the estimate is aligned to the ground truth")
       .choices(to_strings(kAlignmentNames));

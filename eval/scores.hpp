@@ -16,7 +16,7 @@ namespace evbench {
 
 /// The protocol of an evaluation: the key "evaluation" of a run's config. The defaults are for monocular back-ends.
 struct ScoreOptions {
-  std::string protocol = "";
+  std::string protocol = "none";
   std::string alignment = "sim3";
   int align_first = 0;
   OptionSet::List align_range = {};

@@ -19,10 +19,10 @@ namespace {
 
 template <class Interface>
 void list(const Plugins& plugins) {
-  fmt::print("{}:\n", PluginKind<Interface>::name);
+  fmt::print("{} (version of its results):\n", PluginKind<Interface>::name);
   for (const auto& [name, entry] : plugins.of<Interface>().entries()) {
     const std::string origin = entry.origin == kBuiltIn ? "" : fmt::format(" ({})", entry.origin);
-    fmt::print("  {:<20} {}{}\n", name, entry.text, origin);
+    fmt::print("  {:<20} {:>2}  {}{}\n", name, entry.version, entry.text, origin);
   }
 }
 

@@ -7,7 +7,7 @@ namespace evbench {
 
 CLI::Option* add_protocol_name(CLI::App& command, std::string& protocol, const std::string& text) {
   std::vector<std::string> names = protocol_choices();
-  std::erase(names, "");
+  std::erase(names, "none");
   return command.add_option("--protocol", protocol, text)->check(one_of(names));
 }
 
