@@ -42,6 +42,16 @@ Json times(std::span<const double> values) {
   return list;
 }
 
+Json single(std::span<const double> values) {
+  std::string bytes;
+  bytes.reserve(4 * values.size());
+  for (const double value : values) {
+    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+    for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(bits >> shift & 0xffU));
+  }
+  return {{"f32", base64(bytes)}};
+}
+
 Json coarse(std::span<const double> values) {
   constexpr double kMost = 32767.0;
   constexpr std::int16_t kMissing = std::numeric_limits<std::int16_t>::min();

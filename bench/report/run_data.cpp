@@ -43,12 +43,13 @@ std::string content(const std::string& path) {
   return text.str();
 }
 
-Json vectors(const std::vector<Vector3>& values) {
+/// Columns x, y, z.
+Json vectors(const std::vector<Vector3>& values, Json (*column_of)(std::span<const double>) = coarse) {
   Json columns = Json::array();
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> column;
     for (const Vector3& value : values) column.push_back(value[axis]);
-    columns.push_back(coarse(column));
+    columns.push_back(column_of(column));
   }
   return columns;
 }
@@ -63,21 +64,59 @@ Json orientations(const std::vector<Eigen::Quaterniond>& values) {
   return columns;
 }
 
+const Eigen::Quaterniond kNoOrientation(kMissing, kMissing, kMissing, kMissing);
+
+/// Of the two quaternions of a rotation the one that is nearer to the last, so that lines do not jump.
+Eigen::Quaterniond on_one_side(const std::vector<Eigen::Quaterniond>& before, const Eigen::Quaterniond& q) {
+  return before.empty() || !(before.back().dot(q) < 0.0) ? q : Eigen::Quaterniond(-q.coeffs());
+}
+
+/// The poses that are kept, and none in the middle of each hole: longer than 0.3 s, and than five usual steps.
+std::vector<std::optional<std::size_t>> samples(const PoseTrajectory& trajectory, std::size_t most) {
+  std::vector<std::optional<std::size_t>> result;
+  if (trajectory.empty()) return result;
+  const std::vector<StampedPose>& poses = trajectory.poses();
+  const double step = (trajectory.end() - trajectory.start()) / static_cast<double>(poses.size());
+  const double hole = std::max(0.3, 5.0 * step);
+  std::size_t last = 0;
+  for (const std::size_t i : thinned(poses.size(), most)) {
+    for (std::size_t k = last + 1; k <= i; ++k) {
+      if (poses[k].t - poses[k - 1].t <= hole) continue;
+      if (result.back() != k - 1) result.emplace_back(k - 1);
+      result.emplace_back(std::nullopt);
+      if (k < i) result.emplace_back(k);
+      break;
+    }
+    result.emplace_back(i);
+    last = i;
+  }
+  return result;
+}
+
 /// A trajectory with velocities: stated ones, or differentiated where there are none.
 Json trajectory_json(const PoseTrajectory& trajectory, const BodyVelocities& stated, const Similarity& transform,
                      double offset, std::size_t most) {
   std::vector<double> t;
   std::vector<Vector3> p, v, w;
   std::vector<Eigen::Quaterniond> q;
-  for (const std::size_t i : thinned(trajectory.size(), most)) {
-    const StampedPose& pose = trajectory.poses()[i];
+  for (const std::optional<std::size_t> i : samples(trajectory, most)) {
+    if (!i) {  // a line is interrupted
+      t.push_back(kMissing);
+      for (auto* values : {&p, &v, &w}) values->push_back(kNoVector);
+      q.push_back(kNoOrientation);
+      continue;
+    }
+    const StampedPose& pose = trajectory.poses()[*i];
     const SE3 T = transform * pose.T;
     t.push_back(pose.t + offset);
     p.push_back(T.p);
-    q.push_back(q.empty() || q.back().dot(T.q) >= 0.0 ? T.q : Eigen::Quaterniond(-T.q.coeffs()));
+    q.push_back(on_one_side(q, T.q));
     const auto velocity = stated.empty() ? differentiate(trajectory, pose.t) : stated.at(pose.t);
     v.push_back(velocity ? Vector3(transform.scale * velocity->tail<3>()) : kNoVector);
     w.push_back(velocity ? Vector3(velocity->head<3>()) : kNoVector);
+  }
+  for (std::size_t i = 1; i + 1 < t.size(); ++i) {
+    if (std::isnan(t[i])) t[i] = 0.5 * (t[i - 1] + t[i + 1]);
   }
   return {{"t", times(t)}, {"p", vectors(p)}, {"q", orientations(q)}, {"v", vectors(v)}, {"w", vectors(w)}};
 }
@@ -88,8 +127,8 @@ void add_errors(Json& estimate, const PoseTrajectory& trajectory, const Scores& 
   std::map<double, std::size_t> at;
   for (std::size_t i = 0; i < scores.compared.size(); ++i) at[scores.compared[i].t] = i;
   std::vector<double> metres, degrees;
-  for (const std::size_t i : thinned(trajectory.size(), most)) {
-    const auto found = at.find(trajectory.poses()[i].t + scores.options.time_offset);
+  for (const std::optional<std::size_t> i : samples(trajectory, most)) {
+    const auto found = i ? at.find(trajectory.poses()[*i].t + scores.options.time_offset) : at.end();
     metres.push_back(found == at.end() ? kMissing : errors.trans_m[found->second]);
     degrees.push_back(found == at.end() ? kMissing : errors.rot_deg[found->second]);
   }
@@ -101,6 +140,7 @@ void add_errors(Json& estimate, const PoseTrajectory& trajectory, const Scores& 
 struct Scored {
   RunEstimate estimate;
   std::optional<Scores> scores;
+  std::string unscored = {};  ///< why it has none
 
   Similarity alignment() const { return scores ? scores->alignment.transform : Similarity(); }
   double offset() const { return scores ? scores->options.time_offset : 0.0; }
@@ -111,10 +151,12 @@ Scored read_scored(const RunRecord& run, const std::string& suffix, const PoseTr
   Scored result{{read_estimate(file_of_run(run.folder, "final" + suffix + ".tum")),
                  exists(velocities) ? read_velocities(velocities) : BodyVelocities()},
                 {}};
+  result.unscored = kNoGroundTruth;
   if (truth.empty() || result.estimate.poses.empty()) return result;
   try {
     result.scores = score(truth, result.estimate.poses, protocol_of_run(run.folder));
-  } catch (const InputError&) {  // too few poses to align: it is shown as it is
+  } catch (const InputError& error) {  // mostly too few poses to align: it is shown as it is
+    result.unscored = error.what();
   }
   return result;
 }
@@ -134,16 +176,13 @@ Json segment_json(const RunRecord& run, std::size_t number, const RunSegment& se
   for (const std::size_t i : thinned(map.size(), budget.landmarks())) {
     landmarks.push_back(scored.alignment() * map[i].position);
   }
-  const bool has_truth = exists(run.folder + "/groundtruth.tum");
   return {{"from", segment.from},
           {"to", segment.to},
           {"scored", number == run.status->scored},
-          {"note", scored.scores ? ""
-                   : has_truth   ? "not aligned: too few poses"
-                                 : "not aligned: no ground truth"},
+          {"note", scored.scores ? "" : "not aligned: " + scored.unscored},
           {"poses", scored.estimate.poses.size()},
           {"estimate", estimate_json(scored, budget.estimate())},
-          {"landmarks", vectors(landmarks)},
+          {"landmarks", vectors(landmarks, single)},
           {"landmarks_total", map.size()}};
 }
 
@@ -195,7 +234,7 @@ Json newest_json(const RunRecord& run, const Scored& scored, const PoseTrajector
     const Matrix3 rotation = J * relative.covariance.topLeftCorner<3, 3>() * J.transpose();
     t.push_back(relative.t1 + scored.offset());
     p.push_back(T.p);
-    q.push_back(q.empty() || q.back().dot(T.q) >= 0.0 ? T.q : Eigen::Quaterniond(-T.q.coeffs()));
+    q.push_back(on_one_side(q, T.q));
     sigma_m.push_back(position.diagonal().cwiseMax(0.0).cwiseSqrt());
     sigma_deg.push_back(rotation.diagonal().cwiseMax(0.0).cwiseSqrt());
     const std::optional<SE3> true_pose = truth.empty() ? std::nullopt : truth.pose(t.back());
@@ -269,7 +308,7 @@ void add_updates(const RunRecord& run, const Budget& budget, Json& json) {
   const std::vector<std::size_t> kept = slowest(columns["update_ms"], budget.updates());
   json["updates"] = {{"total", columns["t_s"].size()},
                      {"t", times(chosen(columns["t_s"], kept))},
-                     {"ms", coarse(chosen(columns["update_ms"], kept))},
+                     {"ms", single(chosen(columns["update_ms"], kept))},
                      {"states", coarse(chosen(columns["states"], kept))},
                      {"landmarks", coarse(chosen(columns["landmarks"], kept))}};
   std::vector<double> states;
@@ -381,6 +420,14 @@ Json periods_json(const RunRecord& run) {
   return periods;
 }
 
+/// In time order.
+Json events_json(const RunRecord& run) {
+  if (!run.events.is_array()) return Json::array();
+  std::vector<Json> events(run.events.begin(), run.events.end());
+  std::ranges::stable_sort(events, {}, [](const Json& event) { return event.value("t", 0.0); });
+  return events;
+}
+
 /// The first and the last lines of a long text.
 std::string shortened(const std::string& text, std::size_t most) {
   if (text.size() <= most) return text;
@@ -436,7 +483,7 @@ Json run_json(const RunRecord& run, const Budget& budget) {
                {"newest", nullptr},
                {"control_times", nullptr},
                {"periods", periods_json(run)},
-               {"events", run.events.is_array() ? run.events : Json::array()},
+               {"events", events_json(run)},
                {"tracks", nullptr},
                {"updates", nullptr},
                {"parameters", nullptr},
@@ -445,7 +492,7 @@ Json run_json(const RunRecord& run, const Budget& budget) {
   if (!run.done) return json;
   if (run.status && run.status->status.state != RunState::ok) json["time"] = run.status->status.time;
   json["log"] = shortened(content(run.folder + "/log.txt"), budget.log_characters());
-  if (budget.has_configs()) json["config"] = content(run.folder + "/config.json");
+  if (budget.shows_details()) json["config"] = content(run.folder + "/config.json");
   const std::string truth_file = run.folder + "/groundtruth.tum";
   PoseTrajectory truth = exists(truth_file) ? read_tum(truth_file) : PoseTrajectory();
   if (run.range) truth = truth.cut(run.range->from, run.range->to);
@@ -460,7 +507,7 @@ Json run_json(const RunRecord& run, const Budget& budget) {
       if (scored.scores) {
         json["alignment"] = fmt::format("{}, scale {:.4g}", scored.scores->options.alignment, scored.alignment().scale);
       }
-      json["causal"] = causal_json(run, scored, budget);
+      if (budget.shows_details()) json["causal"] = causal_json(run, scored, budget);
       json["newest"] = newest_json(run, scored, truth, budget);
     }
   }

@@ -11,15 +11,15 @@ struct Budget {
   explicit Budget(std::size_t runs)
       : factor_(std::clamp(100.0 / static_cast<double>(std::max<std::size_t>(runs, 1)), 0.25, 20.0)) {}
 
-  std::size_t estimate() const { return of(300); }
+  std::size_t estimate() const { return of(350); }
   std::size_t causal() const { return of(150); }
   std::size_t covariances() const { return of(60); }
   std::size_t updates() const { return of(150); }
   std::size_t parameters() const { return of(80); }
-  std::size_t landmarks() const { return of(250); }
+  std::size_t landmarks() const { return of(150); }
   std::size_t tracks() const { return of(250); }
   std::size_t log_characters() const { return of(1500); }
-  bool has_configs() const { return factor_ >= 4.0; }
+  bool shows_details() const { return factor_ >= 5.0; }  ///< configs, causal estimates
 
  private:
   std::size_t of(double samples) const { return static_cast<std::size_t>(samples * factor_); }
