@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the packages that evbench needs (packages.txt; Debian and its relatives) and builds it, in build/PRESET.
-#   ./setup.sh [--for figures|tests]... [--set OPTION=VALUE]... [PRESET [TARGET...]]
+#   ./setup.sh [--for figures|report|tests]... [--set OPTION=VALUE]... [PRESET [TARGET...]]
 # PRESET: release (default), or another one of CMakePresets.json. --for: packages for more than building and running; with
 # "tests" the tests are built, too. --set: an option of CMakeLists.txt, e.g. EVBENCH_MICRO=ON; it stays until it is set anew.
 set -euo pipefail

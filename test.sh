@@ -16,11 +16,11 @@ esac
 failed=()
 for stage in "$@"; do
   case $stage in
-    fast) preset=release test=(release -L '^fast$') ;;
-    long) preset=release test=(long) ;;
-    *) preset=$stage test=("$stage") ;;
+    fast) preset=release test=(release -L '^fast$') report=() ;;
+    long) preset=release test=(long) report=(--for report) ;;
+    *) preset=$stage test=("$stage") report=() ;;
   esac
-  ./setup.sh --for tests --for figures "$preset"
+  ./setup.sh --for tests --for figures ${report[@]+"${report[@]}"} "$preset"
   echo "== testing ($stage)"
   ctest --preset "${test[@]}" -j "$(nproc)" || failed+=("$stage")
 done

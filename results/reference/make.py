@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Makes the reference results anew, and checks what is committed.
+
+    results/reference/make.py [--evbench PROGRAM] [NAME...]   runs the experiments (results/reference/experiments.json)
+                                                              and writes their tables, CSV and manifests; what is
+                                                              complete below results/ is not run again, so that an
+                                                              interrupted call can be continued
+    results/reference/make.py --list                          the experiments, with the time that each took
+    results/reference/make.py --check [--evbench PROGRAM]     fails where a committed table was changed by hand, or was
+                                                              made with other versions of plugins than the program has
+
+A page has a table between <!-- made by: evbench table ... --> and <!-- end -->; `evbench figure` lines make its pictures.
+"""
+
+import argparse
+import collections
+import csv
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import time
+
+REFERENCE = pathlib.Path(__file__).resolve().parent
+ROOT = REFERENCE.parent.parent
+BLOCK = re.compile(r"(<!-- made by: (evbench table .*?) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+FIGURE = re.compile(r"<!-- made by: (evbench figure .*?) -->")
+
+
+def experiments():
+    return json.loads((REFERENCE / "experiments.json").read_text())
+
+
+def run(program, command, **more):
+    """Runs `evbench ...` in the root of the repository; environment variables in it are replaced."""
+    words = [os.path.expandvars(word) for word in shlex.split(command)]
+    return subprocess.run([program, *words[1:]], cwd=ROOT, check=True, **more)
+
+
+def output(program, command):
+    return run(program, command, stdout=subprocess.PIPE, text=True).stdout
+
+
+def runs_of(folder):
+    """job.json and manifest.json of each run of an experiment."""
+    for path in sorted(folder.glob("*/manifest.json")):
+        yield json.loads((path.parent / "job.json").read_text()), json.loads(path.read_text())
+
+
+def versions_of(job):
+    for part in ("source", "frontend", "backend"):
+        yield job[part]["type"], job[part]["version"]
+
+
+def manifest(name, folder, seconds):
+    plugins, commits, hosts, seeds, versions, days = {}, set(), set(), set(), set(), set()
+    count = 0
+    for job, made in runs_of(folder):
+        count += 1
+        for plugin, version in versions_of(job):
+            plugins.setdefault(plugin, set()).add(version)
+        commits.add(made["program"]["commit"])
+        versions.add(made["program"]["version"])
+        hosts.add(f'{made["host"]["processor"]}, {made["host"]["cores"]} cores')
+        seeds.add(job["seed"])
+        days.add(made["finished"][:10])
+    mixed = {plugin: sorted(known) for plugin, known in plugins.items() if len(known) > 1}
+    if mixed:
+        raise SystemExit(f"{name}: runs of several versions are in {folder}: {mixed}; expected one of each: remove the older")
+    return {"experiment": name, "runs": count, "program": sorted(versions), "commits": sorted(commits),
+            "plugins": {plugin: known.pop() for plugin, known in sorted(plugins.items())}, "seeds": sorted(seeds),
+            "hosts": sorted(hosts), "days": sorted(days), "seconds": round(seconds)}
+
+
+def write_csv(program, folder, path):
+    """A row per run, without columns that name folders or times of this machine."""
+    table = output(program, f"evbench table {folder} --format csv --all")
+    rows = list(csv.DictReader(table.splitlines()))
+    left_out = {"folder", "reason", "protocol"} | {key for key in rows[0] if key.startswith("times.")}
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, [key for key in rows[0] if key not in left_out], extrasaction="ignore",
+                                lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def digest(text):
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def fill(program, page):
+    """Writes the tables and pictures of a page, and returns the digests of its tables."""
+    text = page.read_text()
+    for command in FIGURE.findall(text):
+        run(program, command)
+    text = BLOCK.sub(lambda found: found[1] + "\n" + output(program, found[2]).rstrip() + "\n\n" + found[4], text)
+    page.write_text(text)
+    return [digest(found[2]) for found in BLOCK.findall(text)]
+
+
+def make(program, names):
+    for experiment in experiments():
+        name = experiment["name"]
+        if names and name not in names:
+            continue
+        missing = [variable for variable in experiment.get("needs", []) if not os.environ.get(variable)]
+        if missing:
+            print(f"{name}: left out: {', '.join(missing)} is not set")
+            continue
+        print(f"== {name}: {experiment['command']}", flush=True)
+        begin = time.monotonic()
+        result = subprocess.run([program, *map(os.path.expandvars, shlex.split(experiment["command"])[1:])], cwd=ROOT)
+        if result.returncode not in (0, 3):  # 3: runs failed, which the tables show
+            raise SystemExit(f"{name}: {experiment['command']} ended with {result.returncode}")
+        folder = ROOT / "results" / experiment.get("folder", name)
+        record = REFERENCE / f"{name}.manifest.json"
+        before = json.loads(record.read_text()).get("seconds", 0) if record.exists() else 0
+        made = manifest(name, folder, max(before, time.monotonic() - begin))
+        write_csv(program, folder.relative_to(ROOT), REFERENCE / f"{name}.csv")
+        made["tables"] = fill(program, REFERENCE / experiment["page"])
+        record.write_text(json.dumps(made, indent=1) + "\n")
+
+
+def present_versions(program):
+    versions = {}
+    for line in output(program, "evbench list").splitlines():
+        if found := re.match(r"  (\S+) +(\d+) +\S", line):
+            versions[found[1]] = int(found[2])
+    return versions
+
+
+def check(program):
+    faults = []
+    now = present_versions(program)
+    tables = collections.defaultdict(list)
+    for experiment in experiments():
+        record = REFERENCE / f"{experiment['name']}.manifest.json"
+        if not record.exists():
+            faults.append(f"{experiment['name']}: was never made; results/reference/make.py {experiment['name']}")
+            continue
+        made = json.loads(record.read_text())
+        tables[experiment["page"]] = made.get("tables", [])
+        for plugin, version in made["plugins"].items():
+            if plugin in now and now[plugin] != version:
+                faults.append(f"{experiment['name']}: was made with {plugin} {version}, the program has {now[plugin]}; "
+                              f"results/reference/make.py {experiment['name']}")
+    for page, digests in tables.items():
+        found = [digest(block[2]) for block in BLOCK.findall((REFERENCE / page).read_text())]
+        if found != digests:
+            faults.append(f"results/reference/{page}: a table is not as it was made")
+    for fault in faults:
+        print(fault)
+    print(f"{len(tables)} pages of reference results, {len(faults)} faults")
+    return 1 if faults else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--evbench", default=str(ROOT / "build/release/bin/evbench"))
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--list", action="store_true")
+    parser.add_argument("names", nargs="*")
+    arguments = parser.parse_args()
+    if arguments.list:
+        for experiment in experiments():
+            record = REFERENCE / f"{experiment['name']}.manifest.json"
+            seconds = json.loads(record.read_text()).get("seconds") if record.exists() else None
+            print(f"{experiment['name']:<28} {f'{seconds} s' if seconds else 'never made':<12} {experiment['command']}")
+        return 0
+    program = str(pathlib.Path(arguments.evbench).resolve())
+    if arguments.check:
+        return check(program)
+    unknown = set(arguments.names) - {experiment["name"] for experiment in experiments()}
+    if unknown:
+        parser.error(f"there is no experiment {', '.join(sorted(unknown))}; see --list")
+    make(program, arguments.names)
+    return 0
+
+
+sys.exit(main())
