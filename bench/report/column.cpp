@@ -28,6 +28,16 @@ std::string base64(const std::string& bytes) {
 
 }  // namespace
 
+Json single(std::span<const double> values) {
+  std::string bytes;
+  bytes.reserve(4 * values.size());
+  for (const double value : values) {
+    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+    for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(bits >> shift & 0xffU));
+  }
+  return {{"f32", base64(bytes)}};
+}
+
 Json times(std::span<const double> values) {
   if (values.size() > 2) {
     const double step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
@@ -37,19 +47,11 @@ Json times(std::span<const double> values) {
     }
     if (even) return {{"from", values.front()}, {"step", step}, {"n", values.size()}};
   }
+  constexpr double kExact = 1e4;  // [s]: in single precision to half a millisecond
+  if (std::ranges::all_of(values, [](double value) { return std::abs(value) < kExact; })) return single(values);
   Json list = Json::array();
   for (const double value : values) list.push_back(std::round(1e6 * value) / 1e6);
   return list;
-}
-
-Json single(std::span<const double> values) {
-  std::string bytes;
-  bytes.reserve(4 * values.size());
-  for (const double value : values) {
-    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
-    for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(bits >> shift & 0xffU));
-  }
-  return {{"f32", base64(bytes)}};
 }
 
 Json coarse(std::span<const double> values) {

@@ -8,7 +8,7 @@
 namespace evbench::report {
 
 /// A series of numbers as the page reads it (bench/report/page/src/data.ts, Column). NaN: missing.
-/// Times [s], to a microsecond: equidistant ones as three numbers.
+/// Times [s]: equidistant ones as three numbers, others to half a millisecond.
 Json times(std::span<const double> values);
 /// Values in single precision: for a few that are far from the others.
 Json single(std::span<const double> values);

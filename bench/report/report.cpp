@@ -190,7 +190,7 @@ Json payload(std::span<RunRecord> runs, const std::string& command) {
   }
   if (runs.size() > 5) {
     json["remarks"].push_back(
-        fmt::format("Curves over time are thinned to about {} samples a run.", budget.estimate()));
+        fmt::format("Curves over time are thinned to about {} samples a run.", budget.trajectory()));
   }
 
   std::map<std::string, std::size_t> sequences;

@@ -181,7 +181,7 @@ Json segment_json(const RunRecord& run, std::size_t number, const RunSegment& se
           {"scored", number == run.status->scored},
           {"note", scored.scores ? "" : "not aligned: " + scored.unscored},
           {"poses", scored.estimate.poses.size()},
-          {"estimate", estimate_json(scored, budget.estimate())},
+          {"estimate", estimate_json(scored, budget.trajectory())},
           {"landmarks", vectors(landmarks, single)},
           {"landmarks_total", map.size()}};
 }
@@ -315,7 +315,7 @@ void add_updates(const RunRecord& run, const Budget& budget, Json& json) {
   for (const double t : columns["t_s"]) {
     if (states.empty() || t > states.back()) states.push_back(t);
   }
-  json["control_times"] = times(chosen(states, thinned(states.size(), budget.estimate())));
+  json["control_times"] = times(chosen(states, thinned(states.size(), budget.updates())));
 }
 
 std::string unit_of(const std::string& parameter) {
@@ -461,7 +461,7 @@ Json ground_truth_json(const RunRecord& run, const Budget& budget) {
   if (!exists(path)) return nullptr;
   PoseTrajectory truth = read_tum(path);
   if (run.range) truth = truth.cut(run.range->from, run.range->to);
-  return truth.empty() ? Json() : trajectory_json(truth, {}, {}, 0.0, 2 * budget.estimate());
+  return truth.empty() ? Json() : trajectory_json(truth, {}, {}, 0.0, budget.trajectory());
 }
 
 Json run_json(const RunRecord& run, const Budget& budget) {

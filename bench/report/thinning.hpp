@@ -9,15 +9,15 @@ namespace evbench::report {
 /// Numbers of samples that a report keeps of each series of a run, so that a report of 100 runs stays below 5 MB.
 struct Budget {
   explicit Budget(std::size_t runs)
-      : factor_(std::clamp(100.0 / static_cast<double>(std::max<std::size_t>(runs, 1)), 0.25, 20.0)) {}
+      : factor_(std::clamp(85.0 / static_cast<double>(std::max<std::size_t>(runs, 1)), 0.25, 20.0)) {}
 
-  std::size_t estimate() const { return of(350); }
+  std::size_t trajectory() const { return of(250); }  ///< estimate and ground truth
   std::size_t causal() const { return of(150); }
-  std::size_t covariances() const { return of(60); }
+  std::size_t covariances() const { return of(40); }
   std::size_t updates() const { return of(150); }
   std::size_t parameters() const { return of(80); }
-  std::size_t landmarks() const { return of(150); }
-  std::size_t tracks() const { return of(250); }
+  std::size_t landmarks() const { return of(100); }
+  std::size_t tracks() const { return of(100); }
   std::size_t log_characters() const { return of(1500); }
   bool shows_details() const { return factor_ >= 5.0; }  ///< configs, causal estimates
 
