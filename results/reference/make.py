@@ -9,11 +9,11 @@
     results/reference/make.py --check [--evbench PROGRAM]     fails where a committed table was changed by hand, or was
                                                               made with other versions of plugins than the program has
 
-A page has a table between <!-- made by: evbench table ... --> and <!-- end -->; `evbench figure` lines make its pictures.
+A page has a table between <!-- made by: evbench table ... --> and <!-- end -->, without its notes where the command ends
+with "; without notes". <!-- made by: evbench figure ... --> makes a picture.
 """
 
 import argparse
-import collections
 import csv
 import hashlib
 import json
@@ -27,7 +27,7 @@ import time
 
 REFERENCE = pathlib.Path(__file__).resolve().parent
 ROOT = REFERENCE.parent.parent
-BLOCK = re.compile(r"(<!-- made by: (evbench table .*?) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- made by: (evbench table [^\n]*?)(; without notes)? -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 FIGURE = re.compile(r"<!-- made by: (evbench figure .*?) -->")
 
 
@@ -97,9 +97,18 @@ def fill(program, page):
     text = page.read_text()
     for command in FIGURE.findall(text):
         run(program, command)
-    text = BLOCK.sub(lambda found: found[1] + "\n" + output(program, found[2]).rstrip() + "\n\n" + found[4], text)
+
+    def made(block):
+        table = output(program, block[2])
+        return block[1] + "\n" + (table.split("\n\n")[0] if block[3] else table).rstrip() + "\n\n" + block[5]
+
+    text = BLOCK.sub(made, text)
     page.write_text(text)
-    return [digest(found[2]) for found in BLOCK.findall(text)]
+    return digests(text)
+
+
+def digests(text):
+    return [digest(block[3]) for block in BLOCK.findall(text)]
 
 
 def make(program, names):
@@ -121,7 +130,7 @@ def make(program, names):
         before = json.loads(record.read_text()).get("seconds", 0) if record.exists() else 0
         made = manifest(name, folder, max(before, time.monotonic() - begin))
         write_csv(program, folder.relative_to(ROOT), REFERENCE / f"{name}.csv")
-        made["tables"] = fill(program, REFERENCE / experiment["page"])
+        made["tables"] = {page: fill(program, ROOT / page) for page in experiment["pages"]}
         record.write_text(json.dumps(made, indent=1) + "\n")
 
 
@@ -136,22 +145,21 @@ def present_versions(program):
 def check(program):
     faults = []
     now = present_versions(program)
-    tables = collections.defaultdict(list)
+    tables = {}
     for experiment in experiments():
         record = REFERENCE / f"{experiment['name']}.manifest.json"
         if not record.exists():
             faults.append(f"{experiment['name']}: was never made; results/reference/make.py {experiment['name']}")
             continue
         made = json.loads(record.read_text())
-        tables[experiment["page"]] = made.get("tables", [])
+        tables.update(made["tables"])
         for plugin, version in made["plugins"].items():
             if plugin in now and now[plugin] != version:
                 faults.append(f"{experiment['name']}: was made with {plugin} {version}, the program has {now[plugin]}; "
                               f"results/reference/make.py {experiment['name']}")
-    for page, digests in tables.items():
-        found = [digest(block[2]) for block in BLOCK.findall((REFERENCE / page).read_text())]
-        if found != digests:
-            faults.append(f"results/reference/{page}: a table is not as it was made")
+    for page, known in tables.items():
+        if digests((ROOT / page).read_text()) != known:
+            faults.append(f"{page}: a table is not as it was made")
     for fault in faults:
         print(fault)
     print(f"{len(tables)} pages of reference results, {len(faults)} faults")

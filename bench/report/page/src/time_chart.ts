@@ -428,7 +428,7 @@ function drawPanels(state: State, panels: TimePanel[], width: number, of: Colour
       name: panel.label,
       nameLocation: "middle",
       nameGap: 46,
-      nameTextStyle: { color: of.text, fontSize: 11 },
+      nameTextStyle: { color: of.text, fontSize: 11, lineHeight: 13 },
       axisLine: { show: true, lineStyle: { color: of.faint } },
       axisLabel: { color: of.faint, formatter: formatTick, showMinLabel: panel.log ?? false, showMaxLabel: panel.log ?? false, fontSize: 11 },
       splitLine: { lineStyle: { color: of.grid } },

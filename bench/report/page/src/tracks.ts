@@ -73,7 +73,7 @@ function parameterPanels(state: State, of: Colours): TimePanel[] {
   const groups = new Map<string, { label: string; columns: Parameters["columns"] }>();
   for (const column of parameters.columns) {
     const name = column.name.replace(/_[xyz]$/, "");
-    const group = groups.get(name) ?? { label: column.unit ? `${name} [${column.unit}]` : name, columns: [] };
+    const group = groups.get(name) ?? { label: column.unit ? `${name}\n[${column.unit}]` : name, columns: [] };
     group.columns.push(column);
     groups.set(name, group);
   }
