@@ -106,6 +106,12 @@ void set_value(Json& config, const std::string& assignment, const Json& of_confi
   *target = is_text || value.is_discarded() ? Json(text) : value;
 }
 
+/// Whether overrides name a protocol: it then replaces the config's options of protocols, not those of the overrides.
+bool name_protocol(const std::vector<std::string>& overrides) {
+  return std::ranges::any_of(overrides,
+                             [](const std::string& text) { return text.starts_with("evaluation.protocol="); });
+}
+
 /// Whether an error is caused by an override: it names its place or one below, the list around it, or an unknown key
 /// there.
 bool is_about(const std::string& error, const std::string& path, const std::string& assignment) {
@@ -336,6 +342,9 @@ ConfigFile::ConfigFile(std::string path, Json config, const Plugins& plugins)
 
 Experiment ConfigFile::experiment(const std::vector<std::string>& overrides, const std::string& origin) const {
   Json config = config_;
+  if (name_protocol(overrides) && config.is_object() && config.contains("evaluation")) {
+    forget_protocol(config["evaluation"]);
+  }
   for (const std::string& assignment : overrides) set_value(config, assignment, schema_, origin);
   std::vector<std::string> remarks = rename_old_keys(config);
   if (config.is_object() && config.contains("evaluation")) fill_in_protocol(config["evaluation"]);
@@ -388,6 +397,7 @@ ScoreOptions read_evaluation(const std::string& path, const Json& otherwise, con
     if (!file.is_object()) throw InputError(fmt::format("{}: expected a config with an \"evaluation\"", path));
     json["evaluation"] = file.value("evaluation", Json::object());
   }
+  if (name_protocol(overrides)) forget_protocol(json["evaluation"]);
   for (const std::string& assignment : overrides) {
     if (!assignment.starts_with("evaluation.") && !assignment.starts_with("evaluation=")) {
       throw InputError(

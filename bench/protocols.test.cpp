@@ -79,6 +79,11 @@ TEST_CASE("The time offset that fits best is found to 0.1 ms, and named") {
       shell(folder, "\"$evbench\" eval truth.txt estimate.txt -as --t_max_diff 0.1 --t_offset 0.0432 --fit_offset 0.1");
   REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.err, ContainsSubstring("0.0000 s are added to its times"));
+  const Outcome far =
+      shell(folder, "\"$evbench\" eval truth.txt estimate.txt -as --t_max_diff 0.1 --t_offset 0.3 --fit_offset 0.1");
+  CHECK_THAT(far.err, ContainsSubstring("0.2000 s are added") && ContainsSubstring("within --fit_offset"));
+  const Outcome wide = shell(folder, "\"$evbench\" eval truth.txt estimate.txt -as --t_max_diff 0.1 --fit_offset 19.9");
+  CHECK_THAT(wide.err, ContainsSubstring("0.0000 s are added"));  // not two poses that overlap
 }
 
 TEST_CASE("A protocol comes from a config, an option or a table, and a setting beside it makes it custom") {
@@ -110,26 +115,33 @@ TEST_CASE("A protocol comes from a config, an option or a table, and a setting b
   CHECK_THAT(table(""), ContainsSubstring("Protocol: deio"));  // the run is unchanged
   REQUIRE(shell(folder, "\"$evbench\" score results --set evaluation.tolerance=0.02").exit_code == 0);
   CHECK_THAT(table(""), ContainsSubstring("Protocol: custom (deio but tolerance): "));
+  CHECK(shell(folder, "\"$evbench\" score results --protocol evo --set evaluation.tolerance=1").exit_code == 2);
+  REQUIRE(shell(folder, "\"$evbench\" score results --set evaluation.protocol=tum").exit_code == 0);
+  CHECK_THAT(table(""), ContainsSubstring("Protocol: tum: SE(3) alignment on all poses"));
   REQUIRE(shell(folder, "\"$evbench\" score results --protocol evo").exit_code == 0);
   CHECK_THAT(table(""), ContainsSubstring("Protocol: evo: no alignment; nearest ground truth within 0.01 s"));
 }
 
-TEST_CASE("Runs stand beside published numbers of their sequence, each by its own protocol") {
+TEST_CASE("Runs stand beside published numbers of their sequence, each by its own protocol, and no others") {
+  if (!data_file("poster_translation/tracks_eklt.txt")) return;
   const TemporaryFolder folder;
   REQUIRE(shell(folder, "\"$evbench\" run '" + std::string(EVBENCH_CONFIGS) +
-                            "/examples/simulated_tracks.json' --quiet --out results --set source.duration=9")
+                            "/paper/table1_poster_translation.json' --quiet --out results --set "
+                            "'backends=[{\"type\":\"bundle_adjustment\",\"batch_duration\":0.1}]'")
               .exit_code == 0);
   const auto table = [&](const std::string& options) {
     return shell(folder, "root=\"$PWD\" && cd '" + std::string(EVBENCH_CONFIGS) +
-                             "/..' && \"$evbench\" table \"$root/results\" " + options);
+                             "/..' && \"$evbench\" table \"$root/results\" --published " + options);
   };
-  const Outcome published = table("--published poster_6dof --format csv");
+  const Outcome published = table("poster_translation --format csv");
   CAPTURE(published.err);
-  CHECK_THAT(published.out, ContainsSubstring("deio,DEIO,\"events, IMU; learned, GPU\",0.08"));
+  CHECK_THAT(published.out, ContainsSubstring("deio,DEIO,\"events, IMU; learned, GPU\",0.04"));
   for (const char* protocol : {"eklt_vio", "hku_5s", "devo", "deio"}) {
-    CHECK_THAT(published.out, ContainsSubstring(std::string(protocol) + ",bundle_adjustment,events,"));
+    CHECK_THAT(published.out, ContainsSubstring(std::string(protocol) + ",bundle_adjustment,recorded tracks,"));
   }
-  CHECK_THAT(table("--published poster_7dof").err, ContainsSubstring("poster_6dof"));
+  CHECK_THAT(table("poster_7dof").err, ContainsSubstring("poster_6dof"));
+  CHECK_THAT(table("hdr_poster").err, ContainsSubstring("none of these runs is of hdr_poster"));
+  CHECK_THAT(table("poster_translation --protocol evo").err, ContainsSubstring("excludes"));
 }
 
 TEST_CASE("Runs are compared with results that were written before") {

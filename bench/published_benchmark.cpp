@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "bench/scores_by_protocol.hpp"
@@ -19,10 +20,21 @@ namespace {
 
 /// Runs of one experiment and label.
 struct Ours {
-  std::string name;
+  std::string name, inputs, time;
   std::vector<double> values, covered;
   std::size_t unscored = 0;  ///< lost, failed, or without poses to align on
 };
+
+/// What the tracks of a run are from.
+std::string inputs_of(const RunRecord& run) {
+  const std::string frontend = setting_text(run.settings, "frontend.type");
+  return frontend == "recorded" ? "recorded tracks" : "events (" + frontend + ")";
+}
+
+std::string time_of(const RunRecord& run) {
+  const bool known = run.range && std::isfinite(run.range->from) && std::isfinite(run.range->to);
+  return known ? fmt::format("{:.4g} to {:.4g}", run.range->from, run.range->to) : "";
+}
 
 std::vector<Ours> group(const std::vector<RunRecord>& runs, const std::string& metric) {
   const bool several =
@@ -31,7 +43,7 @@ std::vector<Ours> group(const std::vector<RunRecord>& runs, const std::string& m
   for (const RunRecord& run : runs) {
     const std::string name = several ? fmt::format("{}: {}", run.experiment, run.label) : run.label;
     auto found = std::ranges::find(groups, name, &Ours::name);
-    if (found == groups.end()) found = groups.insert(groups.end(), {name, {}, {}});
+    if (found == groups.end()) found = groups.insert(groups.end(), {name, inputs_of(run), time_of(run), {}, {}});
     const RunNumbers numbers(run, false);
     const auto value = numbers.at(metric);
     if (!run.competes() || !value) {
@@ -69,11 +81,14 @@ PublishedBenchmark read_published_benchmark(const RecordReader& json) {
 }
 
 std::string sequence_in(const PublishedBenchmark& benchmark, const RunRecord& run) {
-  const Json* const dataset = find_setting(run.settings, "source.dataset");
-  if (dataset == nullptr || !dataset->is_string()) return "";
-  const auto name = dataset->get<std::string>();
-  const std::string sequence = name.substr(name.find('/') + 1);
-  return std::ranges::find(benchmark.sequences, sequence) == benchmark.sequences.end() ? "" : sequence;
+  for (const char* setting : {"source.dataset", "source.folder"}) {
+    const Json* const value = find_setting(run.settings, setting);
+    if (value == nullptr || !value->is_string()) continue;
+    const auto path = value->get<std::string>();
+    const std::string name = path.substr(path.rfind('/') + 1);
+    if (std::ranges::find(benchmark.sequences, name) != benchmark.sequences.end()) return name;
+  }
+  return "";
 }
 
 std::string published_sequence_table(const PublishedBenchmark& benchmark, const std::string& sequence,
@@ -83,18 +98,21 @@ std::string published_sequence_table(const PublishedBenchmark& benchmark, const 
     throw InputError(
         fmt::format("there are no published numbers of \"{}\"{}", sequence, suggestion(sequence, benchmark.sequences)));
   }
-  std::erase_if(runs, [](const RunRecord& run) { return !run.done; });
+  std::erase_if(runs, [&](const RunRecord& run) { return !run.done || sequence_in(benchmark, run) != sequence; });
+  if (runs.empty()) {
+    throw InputError(
+        fmt::format("none of these runs is of {}; expected some whose source.dataset or source.folder ends "
+                    "with that name",
+                    sequence));
+  }
   const auto column = static_cast<std::size_t>(place - benchmark.sequences.begin());
   const Metric metric = metric_of(benchmark.metric);
   const bool csv = format == TableFormat::csv;
   TextTable table;
-  table.columns = {{"protocol", false},
-                   {"system", false},
-                   {"inputs", false},
-                   {csv ? metric.key : metric.header, true},
-                   {csv ? "coverage" : "covered [%]", true},
-                   {"scored", true},
-                   {"paper", false}};
+  table.columns = {{"protocol", false}, {"system", false},
+                   {"inputs", false},   {csv ? metric.key : metric.header, true},
+                   {"time [s]", false}, {csv ? "coverage" : "covered [%]", true},
+                   {"scored", true},    {"paper", false}};
   table.experiments = {fmt::format("{}: published and here", sequence)};
   std::vector<std::string> protocols;
   for (const PublishedBenchmark::Row& row : benchmark.rows) {
@@ -111,8 +129,9 @@ std::string published_sequence_table(const PublishedBenchmark& benchmark, const 
       };
       table.rows.push_back({{protocol},
                             {ours.name},
-                            {"events"},
+                            {ours.inputs},
                             {median(ours.values, 1.0, 2)},
+                            {ours.time},
                             {median(ours.covered, csv ? 1.0 : 100.0, 0)},
                             {fmt::format("{} of {}", ours.values.size(), all)},
                             {"here"}});
@@ -124,6 +143,7 @@ std::string published_sequence_table(const PublishedBenchmark& benchmark, const 
                             {row.system},
                             {row.inputs},
                             {csv ? fmt::format("{}", value) : fmt::format("{:.2f}", value)},
+                            {csv ? "" : "all"},
                             {csv ? "" : "-"},
                             {csv ? "" : "-"},
                             {row.paper}});

@@ -24,12 +24,12 @@ struct PublishedBenchmark {
 /// Throws InputError with the place for another structure, or an unknown protocol.
 PublishedBenchmark read_published_benchmark(const RecordReader& json);
 
-/// The sequence that a run is of, by the name of its source's dataset; empty if it is none of the benchmark's.
+/// The sequence that a run is of, by the end of its source's dataset or folder; empty if it is none of the benchmark's.
 std::string sequence_in(const PublishedBenchmark& benchmark, const RunRecord& run);
 
-/// Puts the runs beside the published numbers of a sequence, each protocol apart: our runs are scored by it in memory,
-/// those of one experiment and label as their median. Throws InputError, with the nearest name, for an unknown
-/// sequence.
+/// Puts the runs of a sequence beside the published numbers of it, each protocol apart: our runs are scored by it in
+/// memory, those of one experiment and label as their median. Runs of other sequences are left out. Throws InputError,
+/// with the nearest name, for an unknown sequence, and where no run is left.
 std::string published_sequence_table(const PublishedBenchmark& benchmark, const std::string& sequence,
                                      std::vector<RunRecord> runs, TableFormat format, const TableLayout& layout = {});
 

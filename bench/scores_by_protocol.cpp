@@ -38,15 +38,10 @@ TimeRange common_time(const std::vector<RunRecord*>& runs, bool causal) {
   return common;
 }
 
-ScoreOptions options_of(const RunRecord& run, const std::string& protocol) {
-  const ScoreOptions own = protocol_of_run(run.folder);
-  return protocol.empty() ? own : options_by_protocol(protocol, own);
-}
-
 Json score_within(const TimeRange& range, const RunRecord& run, bool causal, const std::string& protocol) {
   if (own_scores(run, causal).is_null()) return nullptr;
   try {
-    ScoreOptions options = options_of(run, protocol);
+    ScoreOptions options = protocol_of(run, protocol);
     const bool limited = options.time_range.size() == 2;
     const TimeRange asked = limited ? TimeRange{options.time_range[0], options.time_range[1]} : TimeRange{};
     const TimeRange time = both(asked, range);
@@ -75,9 +70,22 @@ void for_each_in_parallel(std::size_t count, const Do& act) {
 
 }  // namespace
 
+ScoreOptions protocol_of(const RunRecord& run, const std::string& protocol) {
+  const ScoreOptions own = protocol_of_run(run.folder);
+  return protocol.empty() ? own : options_by_protocol(protocol, own);
+}
+
 void score_by_protocol(std::span<RunRecord> runs, const std::string& protocol) {
+  options_by_protocol(protocol);  // an unknown name is no fault of the runs
   for_each_in_parallel(runs.size(), [&](std::size_t i) {
-    if (runs[i].done) score_run(runs[i].folder, options_of(runs[i], protocol), runs[i]);
+    RunRecord& run = runs[i];
+    if (!run.done) return;
+    try {
+      score_run(run.folder, protocol_of(run, protocol), run);
+    } catch (const InputError& error) {
+      run.final_scores = run.causal_scores = nullptr;
+      run.final_unscored = run.causal_unscored = error.what();
+    }
   });
 }
 

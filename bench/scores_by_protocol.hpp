@@ -4,11 +4,15 @@
 #include <string>
 
 #include "eval/run_record.hpp"
+#include "eval/scores.hpp"
 
 namespace evbench {
 
-/// Replaces the scores of these runs by those of a named protocol (eval/protocols.hpp), in memory. Throws InputError
-/// for an unknown name and for damaged files.
+/// The named protocol (eval/protocols.hpp) with the run's options of the data, or the run's own if the name is empty.
+ScoreOptions protocol_of(const RunRecord& run, const std::string& protocol);
+
+/// Replaces the scores of these runs by those of a named protocol, in memory. A run whose files are damaged has none,
+/// and the reason. Throws InputError for an unknown name.
 void score_by_protocol(std::span<RunRecord> runs, const std::string& protocol);
 
 /// Scores the runs of each experiment and sequence (run_columns.hpp) by their own protocols, or the named one, over

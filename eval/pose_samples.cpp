@@ -2,9 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 
 namespace evbench {
+namespace {
+
+/// The pose at t; none outside the trajectory and in its holes, longer than half a second.
+std::optional<SE3> pose_at(const PoseTrajectory& trajectory, double t) {
+  constexpr double kHole = 0.5;  // [s], as for differentiated velocities
+  const std::vector<StampedPose>& poses = trajectory.poses();
+  const auto right = std::ranges::lower_bound(poses, t, {}, &StampedPose::t);
+  if (right != poses.end() && right != poses.begin() && right->t > t && right->t - std::prev(right)->t > kHole) {
+    return std::nullopt;
+  }
+  return trajectory.pose(t);
+}
+
+}  // namespace
 
 PoseSamples sample_poses(const RunEstimate& estimate, const Similarity& alignment, double time_offset,
                          std::span<const double> times, bool velocity) {
@@ -12,7 +28,7 @@ PoseSamples sample_poses(const RunEstimate& estimate, const Similarity& alignmen
   result.own_velocity = !estimate.velocities.empty();
   for (const double time : times) {
     const double t = time - time_offset;
-    const std::optional<SE3> T = estimate.poses.pose(t);
+    const std::optional<SE3> T = pose_at(estimate.poses, t);
     std::optional<Vector6> moving;
     if (T && velocity) moving = result.own_velocity ? estimate.velocities.at(t) : differentiate(estimate.poses, t);
     if (!T || (velocity && !moving)) {

@@ -2,6 +2,7 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/support/json.hpp"
@@ -82,11 +83,13 @@ std::string segments_text(const Json& segments) {
 }
 
 std::string velocity_text(const VelocityScores& velocity) {
-  const auto line = [](const char* source, const VelocityErrors& errors) {
+  const auto part = [](const RelativeVelocityError& error) {
+    return fmt::format("median {:.4f}, AUC {:.4f}", error.median, error.auc);
+  };
+  const auto line = [&](const char* source, const VelocityErrors& errors) {
     if (!std::isfinite(errors.linear.auc)) return std::string();
-    return fmt::format("velocity, {}: RVE median {:.4f}, AUC {:.4f}; angular: median {:.4f}, AUC {:.4f}; {} times\n",
-                       source, errors.linear.median, errors.linear.auc, errors.angular.median, errors.angular.auc,
-                       errors.times);
+    const std::string angular = std::isfinite(errors.angular.auc) ? "; angular: " + part(errors.angular) : "";
+    return fmt::format("velocity, {}: RVE {}{}; {} times\n", source, part(errors.linear), angular, errors.times);
   };
   return (velocity.own ? line("its own", *velocity.own) : "") + line("differentiated", velocity.differentiated);
 }
@@ -138,7 +141,12 @@ std::string describe(const Scores& scores) {
   text += row("ATE [deg]", scores.ate.rot_deg);
   text += row("RPE [m]", scores.rpe.trans_m);
   text += row("RPE [deg]", scores.rpe.rot_deg);
+  const auto is_too_long = [](const SegmentScores& segments) { return segments.trans_percent.n == 0; };
+  if (!scores.by_length.empty() && std::ranges::all_of(scores.by_length, is_too_long)) {
+    text += fmt::format("no two poses are {:.3g} m apart: no sub-trajectories\n", scores.by_length.front().length_m);
+  }
   for (const SegmentScores& segments : scores.by_length) {
+    if (is_too_long(segments)) continue;
     text += row(fmt::format("{:.3g} m [%]", segments.length_m), segments.trans_percent);
     text += row(fmt::format("{:.3g} m [deg/m]", segments.length_m), segments.rot_deg_per_m);
   }

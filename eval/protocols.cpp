@@ -108,13 +108,23 @@ std::vector<std::string> protocol_choices() {
   return names;
 }
 
+void forget_protocol(Json& evaluation) {
+  if (!evaluation.is_object()) return;
+  const Json settings = settings_of({});
+  for (const auto& [key, value] : settings.items()) evaluation.erase(key);
+}
+
 void fill_in_protocol(Json& evaluation) {
   if (!evaluation.is_object() || !evaluation.contains("protocol") || !evaluation["protocol"].is_string()) return;
   const NamedProtocol* const protocol = find(evaluation["protocol"].get<std::string>());
   if (protocol == nullptr) return;
   const Json settings = settings_of(protocol->options);
+  constexpr std::array kAligned = {"align_first", "align_range", "align_seconds"};
+  const auto given = [&](const char* key) { return evaluation.contains(key); };
+  const bool says_where = std::ranges::any_of(kAligned, given);  // one of them is enough
   for (const auto& [key, value] : settings.items()) {
-    if (!evaluation.contains(key)) evaluation[key] = value;
+    const bool where = std::ranges::find(kAligned, key) != kAligned.end();
+    if (!evaluation.contains(key) && !(where && says_where)) evaluation[key] = value;
   }
 }
 

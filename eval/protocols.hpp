@@ -21,6 +21,9 @@ const std::vector<NamedProtocol>& named_protocols();
 /// Their names, after "none".
 std::vector<std::string> protocol_choices();
 
+/// Takes all options of protocols out of `evaluation` (an object), so that another one can be named in it.
+void forget_protocol(Json& evaluation);
+
 /// Fills in the options of the protocol that `evaluation` (an object) names, but for those that it gives itself.
 /// Options of the data (time_offset, time_range, min_pairs, latency) belong to no protocol. Does nothing without a
 /// protocol, or for an unknown name, which read_options() refuses.

@@ -111,8 +111,10 @@ std::vector<Metric> metrics_of(const std::vector<std::string>& keys, const std::
   std::vector<Metric> metrics;
   for (const std::string& key : keys) {
     if (!any_has(runs, key)) {
-      throw InputError(fmt::format("no run has the metric \"{}\"{} (evbench table --list-metrics has them all)", key,
-                                   suggestion(key, suggested_keys(runs))));
+      const bool known = std::ranges::find(known_metrics(), key, &Metric::key) != known_metrics().end();
+      throw InputError(fmt::format("no run has the metric \"{}\"{} (evbench table --list-metrics has them all{})", key,
+                                   suggestion(key, suggested_keys(runs)),
+                                   known ? "; evbench score adds what an older version did not compute" : ""));
     }
     metrics.push_back(metric_of(key));
   }

@@ -178,10 +178,11 @@ ScoredEstimate score_file(PoseFile ground_truth, const std::string& path, const 
   try {
     ScoreOptions options = score_options(arguments);
     if (arguments.fit_offset) {
-      options.time_offset =
+      const OffsetFit fit =
           fit_time_offset(ground_truth.trajectory, estimate.trajectory, options, *arguments.fit_offset);
-      fmt::print(stderr, "remark: {}: {:.4f} s are added to its times: they make the position error smallest\n", path,
-                 options.time_offset);
+      options.time_offset = fit.offset;
+      fmt::print(stderr, "remark: {}: {:.4f} s are added to its times: they make the position error smallest{}\n", path,
+                 fit.offset, fit.at_edge ? " within --fit_offset; beyond it may be smaller still" : "");
     }
     Scores scores = score(ground_truth.trajectory, estimate.trajectory, options);
     score_velocities(ground_truth.trajectory, ground_truth.velocities, estimate.trajectory, estimate.velocities,

@@ -31,14 +31,14 @@ struct ExportArguments {
   std::string from;
   std::vector<std::string> overrides;
   std::string ground_truth, tracks, calibration, aligned, errors, evo, rpg;
-  std::string at, out = "/dev/stdout";
+  std::string at, out;
   bool velocity = false;
   std::string evo_error = kEvoErrorNames[0];
   bool causal = false;
   bool force = false;
 
   std::vector<std::string> outputs() const {
-    return {ground_truth, tracks, calibration, aligned, errors, evo, rpg, at.empty() ? "" : out};
+    return {ground_truth, tracks, calibration, aligned, errors, evo, rpg, out};
   }
   bool of_source() const { return !ground_truth.empty() || !tracks.empty() || !calibration.empty(); }
   bool of_scores() const { return !aligned.empty() || !errors.empty() || !evo.empty() || !rpg.empty(); }
@@ -64,7 +64,7 @@ void check(const ExportArguments& arguments) {
   if (folder && !std::filesystem::exists(arguments.from + "/metrics.json")) {
     throw InputError(fmt::format("{}: has no metrics.json; expected the folder of a run", arguments.from));
   }
-  std::vector<std::string> read = {arguments.from};
+  std::vector<std::string> read = {arguments.from, arguments.at};
   for (const char* name : {"config.json", "job.json", "manifest.json", "metrics.json", "status.json", "final.tum",
                            "causal.tum", "groundtruth.tum", "map.ply", "timing.csv", "log.txt"}) {
     read.push_back(arguments.from + "/" + name);
@@ -138,7 +138,16 @@ void export_samples(const ExportArguments& arguments) {
   }
   const std::vector<double> times = read_times(arguments.at);
   const PoseSamples samples = sample_poses(estimate, alignment, offset, times, arguments.velocity);
-  write_file(arguments.out, samples.text);
+  if (samples.text.empty()) {
+    throw InputError(fmt::format("{}: its times, {} to {} s, are not those of the estimate, {} to {} s", arguments.at,
+                                 std::ranges::min(times), std::ranges::max(times), estimate.poses.start() + offset,
+                                 estimate.poses.end() + offset));
+  }
+  if (arguments.out.empty()) {
+    fmt::print("{}", samples.text);
+  } else {
+    write_file(arguments.out, samples.text);
+  }
   fmt::print(stderr, "remark: {}{}\n",
              is_scored ? "aligned as the run was scored" : "no ground truth: in the back-end's own world and scale",
              !arguments.velocity    ? ""
@@ -200,7 +209,9 @@ void add_export(CLI::App& app, const Plugins& plugins) {
           "--velocity", arguments->velocity,
           "With --at: also the linear velocity in the camera's frame, vx vy vz, as the EvSLAM benchmark takes it")
       ->needs(at);
-  command->add_option("--out", arguments->out, "File for --at")->type_name("FILE")->capture_default_str()->needs(at);
+  command->add_option("--out", arguments->out, "File for --at; by default the standard output")
+      ->type_name("FILE")
+      ->needs(at);
   add_causal_flag(*command, arguments->causal, "The causal poses, as first published, not the final ones");
   add_overrides(*command, arguments->overrides, "Override a value of the config: KEY=VALUE, e.g. seed=3");
   command->add_flag("--force", arguments->force, "Replace files that exist");

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <sstream>
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/protocol_option.hpp"
@@ -14,6 +15,7 @@
 #include "bench/report/report.hpp"
 #include "bench/scores_by_protocol.hpp"
 #include "core/io/atomic_file.hpp"
+#include "eval/find_runs.hpp"
 #include "eval/table.hpp"
 
 namespace evbench {
@@ -30,15 +32,21 @@ constexpr const char* kName = "report.html";
 /// Whether an existing file is a report, which may be made anew.
 bool is_report(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::string head(4096, '\0');
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head.find("<title>evbench report</title>") != std::string::npos;
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str().find(R"(id="data">{"format":"evbench.report",)") != std::string::npos;
 }
 
 std::string file_of(const ReportArguments& arguments) {
   if (!arguments.out.empty()) return arguments.out;
   const bool is_one = arguments.runs.folders.size() == 1 && std::filesystem::is_directory(arguments.runs.folders[0]);
   return is_one ? (std::filesystem::path(arguments.runs.folders[0]) / kName).string() : kName;
+}
+
+void write_report(std::vector<RunRecord> runs, const std::string& protocol, const std::string& command,
+                  const std::string& file) {
+  if (shows_common_time({}, runs.size())) score_common_time(runs, false, protocol);
+  write_file(file, report::page(report::payload(runs, protocol, command)));
 }
 
 void execute(const ReportArguments& arguments) {
@@ -48,21 +56,23 @@ void execute(const ReportArguments& arguments) {
   for (const std::string& folder : arguments.runs.folders) command += " " + folder;
   use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
     if (!arguments.protocol.empty()) score_by_protocol(runs, arguments.protocol);
-    write_report(std::move(runs), command, file);
+    write_report(std::move(runs), arguments.protocol, command, file);
     fmt::print("written: {}\n", file);
   });
 }
 
 }  // namespace
 
-void write_report(std::vector<RunRecord> runs, const std::string& command, const std::string& file) {
-  if (shows_common_time({}, runs.size())) score_common_time(runs, false);
-  write_file(file, report::page(report::payload(runs, command)));
+void check_report_of(const std::string& folder) {
+  const std::string file = (std::filesystem::path(folder) / kName).string();
+  check_outputs({file}, {}, is_report(file));
 }
 
 void report_folder(const std::string& folder, const std::string& command, bool quiet) {
   const std::string file = (std::filesystem::path(folder) / kName).string();
-  use_runs({folder}, [&](std::vector<RunRecord>& runs) { write_report(std::move(runs), command, file); });
+  std::vector<std::string> unreadable;
+  write_report(find_runs(std::vector{folder}, &unreadable), "", command, file);
+  for (const std::string& reason : unreadable) fmt::print(stderr, "remark: not in the report: {}\n", reason);
   if (!quiet) fmt::print("written: {}\n", file);
 }
 
@@ -75,7 +85,7 @@ void add_report(CLI::App& app) {
       ->type_name("FILE");
   add_protocol_name(*command, arguments->protocol,
                     "Score by a published protocol (evbench list protocols) for this page; the runs stay as they are");
-  command->add_flag("--force", arguments->force, "Replace a file that exists and is no report");
+  command->add_flag("--force", arguments->force, "Replace a file that exists; a report is replaced without it");
   command->footer(
       "The page is one file that needs no network and no other file: send it, or open it from the disk. Curves of "
       "many\n"

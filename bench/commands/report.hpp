@@ -1,16 +1,14 @@
 #pragma once
 
 #include <string>
-#include <vector>
-
-#include "eval/run_record.hpp"
 
 namespace evbench {
 
-/// Writes the page of these runs to a file. `command`: the one that asks for it. Throws OutputError.
-void write_report(std::vector<RunRecord> runs, const std::string& command, const std::string& file);
+/// Throws InputError if FOLDER/report.html exists and is no report. To be called before any run.
+void check_report_of(const std::string& folder);
 
-/// Writes the page of all runs below a folder to FOLDER/report.html, and prints its path unless `quiet`.
+/// Writes the page of all runs below a folder to FOLDER/report.html, and prints its path unless `quiet`. Runs that
+/// can't be read are named in remarks. `command`: the one that asks for it. Throws OutputError.
 void report_folder(const std::string& folder, const std::string& command, bool quiet);
 
 }  // namespace evbench

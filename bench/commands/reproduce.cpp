@@ -95,7 +95,7 @@ int execute(ReproduceArguments& arguments, Plugins& plugins) {
   fmt::print("{}{}", arguments.run.quiet ? "" : "\n",
              published_table(published, runs, format, {.width = text_width()}));
   if (published.benchmark) print_sequences(*published.benchmark, runs, format);
-  if (!arguments.run.quiet) print_differences(names, runs);
+  if (!arguments.run.quiet && arguments.run.overrides.empty()) print_differences(names, runs);
   throw_together(failures);
   return exit_code;
 }

@@ -254,6 +254,7 @@ int run_config(const RunArguments& arguments, Plugins& plugins, std::vector<RunR
   load_plugins_of(plugins, arguments.config, arguments.overrides, {.announce = announce});
   const Experiment experiment = read_experiment(arguments.config, arguments.overrides, plugins);
   for (const std::string& remark : experiment.remarks) announce(fmt::format("{}: {}", arguments.config, remark));
+  if (arguments.report) check_report_of((std::filesystem::path(arguments.out) / experiment.name).string());
   std::vector<const Job*> jobs;
   for (const RunConfig& run : experiment.runs) jobs.push_back(&run.job);
   announce_commands(jobs, plugins, announce);

@@ -74,6 +74,7 @@ void add_score(CLI::App& app) {
       ->excludes("--config");
   add_overrides(*command, arguments->overrides,
                 "Override a value of the protocol: evaluation.KEY=VALUE, e.g. evaluation.alignment=se3");
+  command->get_option("--protocol")->excludes("--set");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->footer(
       "Reads final.tum, causal.tum, causal_poses.txt and groundtruth.tum of each run, rewrites its metrics.json, and\n"

@@ -158,6 +158,7 @@ int execute(SweepArguments& arguments, Plugins& plugins) {
   for (const PlannedRun& run : runs) jobs.push_back(&run.config.job);
   announce_commands(jobs, plugins, announce);
   const std::string folder = (std::filesystem::path(options.out) / plan.name).string();
+  if (arguments.report) check_report_of(folder);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw OutputError(fmt::format("{}: can't be made: {}", folder, error.message()));

@@ -89,6 +89,9 @@ void add_table(CLI::App& app) {
   command->add_flag("--list-metrics", arguments->list_metrics,
                     "List the keys for --metrics: all numbers of these runs, and their names in tables");
   add_causal_flag(*command, arguments->options.causal, "Scores of the causal poses, as first published");
+  for (const char* other : {"--protocol", "--metrics", "--over", "--by", "--success", "--causal", "--list-metrics"}) {
+    command->get_option("--published")->excludes(other);
+  }
   command->callback([arguments] { execute(*arguments); });
 }
 

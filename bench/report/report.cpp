@@ -158,7 +158,7 @@ Json settings_json(const std::vector<const RunColumn*>& columns, std::size_t run
 
 }  // namespace
 
-Json payload(std::span<RunRecord> runs, const std::string& command) {
+Json payload(std::span<RunRecord> runs, const std::string& protocol, const std::string& command) {
   const Budget budget(runs.size());
   const std::vector<RunColumn> columns = run_columns(runs);
   const std::vector<RunNumbers> numbers = numbers_of(runs, false);
@@ -172,21 +172,11 @@ Json payload(std::span<RunRecord> runs, const std::string& command) {
   json["figures"] = figures(runs, columns);
 
   std::vector<Json> run_data(runs.size());
-  std::vector<std::string> damaged(runs.size());
-  parallel_for(0, static_cast<int>(runs.size()), [&](int i) {
-    const RunRecord& run = runs[index(i)];
-    try {
-      run_data[index(i)] = run_json(run, budget);
-    } catch (const InputError& error) {
-      RunRecord unread = run;
-      unread.done = false;
-      unread.damage = error.what();
-      run_data[index(i)] = run_json(unread, budget);
-      damaged[index(i)] = fmt::format("{}: {}", names[index(i)], error.what());
-    }
-  });
-  for (std::string& text : damaged) {
-    if (!text.empty()) json["remarks"].push_back(std::move(text));
+  std::vector<std::vector<std::string>> damage(runs.size());
+  parallel_for(0, static_cast<int>(runs.size()),
+               [&](int i) { run_data[index(i)] = run_json(runs[index(i)], protocol, budget, damage[index(i)]); });
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (const std::string& text : damage[i]) json["remarks"].push_back(fmt::format("{}: {}", names[i], text));
   }
   if (runs.size() > 5) {
     json["remarks"].push_back(
@@ -207,7 +197,7 @@ Json payload(std::span<RunRecord> runs, const std::string& command) {
           {{"name", name}, {"from", from}, {"to", to}, {"camera", nullptr}, {"ground_truth", nullptr}});
     }
     Json& sequence = json["sequences"][found->second];
-    if (sequence["ground_truth"].is_null() && damaged[i].empty() && run.done) {
+    if (sequence["ground_truth"].is_null() && run.done) {
       sequence["ground_truth"] = ground_truth_json(run, budget);
     }
     run_data[i]["name"] = names[i];

@@ -9,8 +9,9 @@
 
 namespace evbench::report {
 
-/// All that the page shows of these runs (bench/report/page/src/data.ts, Payload). `command`: the one that asks for it.
-Json payload(std::span<RunRecord> runs, const std::string& command);
+/// All that the page shows of these runs (bench/report/page/src/data.ts, Payload), scored by `protocol`: a name, or
+/// empty for their own. `command`: the one that asks for it.
+Json payload(std::span<RunRecord> runs, const std::string& protocol, const std::string& command);
 
 /// A page that needs no other file: the template with these data.
 std::string page(const Json& payload);

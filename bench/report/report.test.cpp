@@ -166,6 +166,40 @@ TEST_CASE("A report shows runs that failed, and runs without ground truth, and r
   CHECK_THAT(blind.at("runs")[0].at("segments")[0].at("note").get<std::string>(), ContainsSubstring("no ground truth"));
 }
 
+TEST_CASE("A report of another protocol has its curves, too, and damaged files cost no more than their part") {
+  const TemporaryFolder folder;
+  REQUIRE(shell(folder, run("--set 'backend={\"type\": \"gp_map\"}'")).exit_code == 0);
+  REQUIRE(evbench::testing::evbench(folder, "report results --protocol evo").exit_code == 0);
+  const Json evo = data_of(read_file(folder.file("results/report.html")));
+  double sum = 0.0, count = 0.0;
+  for (const double e : numbers(evo.at("runs")[0].at("segments")[0].at("estimate").at("error_m"))) {
+    if (std::isnan(e)) continue;
+    sum += e * e;
+    count += 1.0;
+  }
+  const Json& columns = evo.at("tables")[0].at("columns");
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string key = columns[i].value("key", "");
+    if (key != "ate.trans_m.rmse" && key != "common.ate.trans_m.rmse") continue;
+    const double value = evo.at("tables")[0].at("rows")[0].at("cells")[i].at("value");
+    CHECK(std::sqrt(sum / count) == Approx(value).epsilon(key == "ate.trans_m.rmse" ? 0.001 : 0.05));
+  }
+  REQUIRE(shell(folder,
+                "cd results/*/gp_map-*/ && for file in velocities.txt covariance.txt map.ply causal_poses.txt; do "
+                "echo damaged > $file; done; printf 't_s,update_ms\\n0.1,3\\n' > timing.csv")
+              .exit_code == 0);
+  const Outcome outcome = evbench::testing::evbench(folder, "report results");
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  const Json damaged = data_of(read_file(folder.file("results/report.html")));
+  CHECK(damaged.at("remarks").size() >= 4);
+  CHECK(damaged.at("runs")[0].at("state") != "not run");
+  CHECK(damaged.at("runs")[0].at("segments").size() == 1);
+  folder.write("results/simulated_tracks/report.html", "mine");
+  CHECK(shell(folder, run("--report")).exit_code == 2);
+  CHECK(read_file(folder.file("results/simulated_tracks/report.html")) == "mine");
+}
+
 TEST_CASE("A report of a sweep has a figure against its axis, whose points lead to their runs") {
   const TemporaryFolder folder;
   const Outcome outcome =

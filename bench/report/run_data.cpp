@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "bench/report/column.hpp"
-#include "bench/run_folder.hpp"
+#include "bench/scores_by_protocol.hpp"
 #include "core/data/causal_poses.hpp"
 #include "core/data/map_file.hpp"
 #include "core/data/relative_poses.hpp"
@@ -22,6 +22,7 @@
 #include "core/geometry/so3.hpp"
 #include "core/support/error.hpp"
 #include "core/support/index.hpp"
+#include "core/support/json_reason.hpp"
 #include "eval/old_names.hpp"
 #include "eval/score_run.hpp"
 
@@ -138,23 +139,36 @@ void add_errors(Json& estimate, const PoseTrajectory& trajectory, const Scores& 
 
 /// An estimate and its scores, if it has any.
 struct Scored {
-  RunEstimate estimate;
-  std::optional<Scores> scores;
+  RunEstimate estimate = {};
+  std::optional<Scores> scores = {};
   std::string unscored = {};  ///< why it has none
 
   Similarity alignment() const { return scores ? scores->alignment.transform : Similarity(); }
   double offset() const { return scores ? scores->options.time_offset : 0.0; }
 };
 
-Scored read_scored(const RunRecord& run, const std::string& suffix, const PoseTrajectory& truth) {
+/// Does a part of the page; where files are damaged, adds the reason to `damage`.
+template <class Make>
+void attempt(std::vector<std::string>& damage, const Make& make) {
+  try {
+    make();
+  } catch (const InputError& error) {
+    damage.emplace_back(error.what());
+  } catch (const Json::exception& error) {
+    damage.emplace_back("metrics.json: " + json_reason(error));
+  }
+}
+
+Scored read_scored(const RunRecord& run, const std::string& suffix, const PoseTrajectory& truth,
+                   const ScoreOptions& protocol, std::vector<std::string>& damage) {
   const std::string velocities = file_of_run(run.folder, "velocities" + suffix + ".txt");
-  Scored result{{read_estimate(file_of_run(run.folder, "final" + suffix + ".tum")),
-                 exists(velocities) ? read_velocities(velocities) : BodyVelocities()},
-                {}};
+  Scored result;
+  attempt(damage, [&] { result.estimate.poses = read_estimate(file_of_run(run.folder, "final" + suffix + ".tum")); });
+  if (exists(velocities)) attempt(damage, [&] { result.estimate.velocities = read_velocities(velocities); });
   result.unscored = kNoGroundTruth;
   if (truth.empty() || result.estimate.poses.empty()) return result;
   try {
-    result.scores = score(truth, result.estimate.poses, protocol_of_run(run.folder));
+    result.scores = score(truth, result.estimate.poses, protocol);
   } catch (const InputError& error) {  // mostly too few poses to align: it is shown as it is
     result.unscored = error.what();
   }
@@ -169,9 +183,10 @@ Json estimate_json(const Scored& scored, std::size_t most) {
 }
 
 Json segment_json(const RunRecord& run, std::size_t number, const RunSegment& segment, const Scored& scored,
-                  const std::string& suffix, const Budget& budget) {
+                  const std::string& suffix, const Budget& budget, std::vector<std::string>& damage) {
   const std::string map_file = file_of_run(run.folder, "map" + suffix + ".ply");
-  const std::vector<Landmark> map = exists(map_file) ? read_map(map_file) : std::vector<Landmark>();
+  std::vector<Landmark> map;
+  if (exists(map_file)) attempt(damage, [&] { map = read_map(map_file); });
   std::vector<Vector3> landmarks;
   for (const std::size_t i : thinned(map.size(), budget.landmarks())) {
     landmarks.push_back(scored.alignment() * map[i].position);
@@ -251,12 +266,12 @@ Json newest_json(const RunRecord& run, const Scored& scored, const PoseTrajector
           {"error_deg", vectors(error_deg)}};
 }
 
-Json causal_json(const RunRecord& run, const Scored& scored, const Budget& budget) {
+Json causal_json(const RunRecord& run, const Scored& scored, const ScoreOptions& protocol, const Budget& budget) {
   Scored causal{read_run_estimate(run.folder, true), {}};
   if (causal.estimate.poses.empty()) return nullptr;
   if (scored.scores) {
     try {
-      causal.scores = score_estimate(run.folder, true, protocol_of_run(run.folder), run).scores;
+      causal.scores = score_estimate(run.folder, true, protocol, run).scores;
     } catch (const InputError&) {
     }
   }
@@ -304,7 +319,12 @@ void add_updates(const RunRecord& run, const Budget& budget, Json& json) {
   json["control_times"] = nullptr;
   std::map<std::string, std::vector<double>> columns;
   for (auto& [name, values] : read_csv(run.folder + "/timing.csv")) columns[name] = std::move(values);
-  if (!columns.contains("t_s") || !columns.contains("update_ms") || columns["t_s"].empty()) return;
+  const std::size_t count = columns["t_s"].size();
+  for (const char* name : {"update_ms", "states", "landmarks"}) {
+    if (columns[name].size() != count)
+      throw InputError(fmt::format("{}/timing.csv: has no {} a line", run.folder, name));
+  }
+  if (count == 0) return;
   const std::vector<std::size_t> kept = slowest(columns["update_ms"], budget.updates());
   json["updates"] = {{"total", columns["t_s"].size()},
                      {"t", times(chosen(columns["t_s"], kept))},
@@ -459,12 +479,18 @@ Json scores_json(const RunRecord& run) {
 Json ground_truth_json(const RunRecord& run, const Budget& budget) {
   const std::string path = run.folder + "/groundtruth.tum";
   if (!exists(path)) return nullptr;
-  PoseTrajectory truth = read_tum(path);
+  PoseTrajectory truth;
+  try {
+    truth = read_tum(path);
+  } catch (const InputError&) {  // run_json() says so
+    return nullptr;
+  }
   if (run.range) truth = truth.cut(run.range->from, run.range->to);
   return truth.empty() ? Json() : trajectory_json(truth, {}, {}, 0.0, budget.trajectory());
 }
 
-Json run_json(const RunRecord& run, const Budget& budget) {
+Json run_json(const RunRecord& run, const std::string& protocol, const Budget& budget,
+              std::vector<std::string>& damage) {
   Json json = {{"label", run.label},
                {"experiment", run.experiment},
                {"folder", run.folder},
@@ -477,43 +503,50 @@ Json run_json(const RunRecord& run, const Budget& budget) {
                                               : ""},
                {"time", nullptr},
                {"alignment", ""},
-               {"scores", scores_json(run)},
+               {"scores", Json::array()},
                {"segments", Json::array()},
                {"causal", nullptr},
                {"newest", nullptr},
                {"control_times", nullptr},
                {"periods", periods_json(run)},
-               {"events", events_json(run)},
+               {"events", Json::array()},
                {"tracks", nullptr},
                {"updates", nullptr},
                {"parameters", nullptr},
                {"log", ""},
                {"config", ""}};
   if (!run.done) return json;
+  attempt(damage, [&] { json["scores"] = scores_json(run); });
+  attempt(damage, [&] { json["events"] = events_json(run); });
   if (run.status && run.status->status.state != RunState::ok) json["time"] = run.status->status.time;
   json["log"] = shortened(content(run.folder + "/log.txt"), budget.log_characters());
   if (budget.shows_details()) json["config"] = content(run.folder + "/config.json");
   const std::string truth_file = run.folder + "/groundtruth.tum";
-  PoseTrajectory truth = exists(truth_file) ? read_tum(truth_file) : PoseTrajectory();
+  PoseTrajectory truth;
+  if (exists(truth_file)) attempt(damage, [&] { truth = read_tum(truth_file); });
   if (run.range) truth = truth.cut(run.range->from, run.range->to);
+  ScoreOptions options;
+  attempt(damage, [&] { options = protocol_of(run, protocol); });
   if (run.status) {
     for (std::size_t i = 0; i < run.status->segments.size(); ++i) {
       const bool is_scored = i + 1 == run.status->scored || run.status->segments.size() == 1;
       const std::string suffix = is_scored ? "" : fmt::format(".segment{}", i + 1);
-      const Scored scored = read_scored(run, suffix, truth);
+      const Scored scored = read_scored(run, suffix, truth, options, damage);
       if (scored.estimate.poses.empty()) continue;
-      json["segments"].push_back(segment_json(run, i + 1, run.status->segments[i], scored, suffix, budget));
+      json["segments"].push_back(segment_json(run, i + 1, run.status->segments[i], scored, suffix, budget, damage));
       if (!is_scored) continue;
       if (scored.scores) {
         json["alignment"] = fmt::format("{}, scale {:.4g}", scored.scores->options.alignment, scored.alignment().scale);
       }
-      if (budget.shows_details()) json["causal"] = causal_json(run, scored, budget);
-      json["newest"] = newest_json(run, scored, truth, budget);
+      if (budget.shows_details()) {
+        attempt(damage, [&] { json["causal"] = causal_json(run, scored, options, budget); });
+      }
+      attempt(damage, [&] { json["newest"] = newest_json(run, scored, truth, budget); });
     }
   }
-  add_updates(run, budget, json);
-  json["parameters"] = parameters_json(run, budget);
-  json["tracks"] = tracks_json(run, budget);
+  attempt(damage, [&] { add_updates(run, budget, json); });
+  attempt(damage, [&] { json["parameters"] = parameters_json(run, budget); });
+  attempt(damage, [&] { json["tracks"] = tracks_json(run, budget); });
   return json;
 }
 

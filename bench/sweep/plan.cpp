@@ -147,7 +147,8 @@ class Planner {
     if (write_options(a.config.evaluation) == write_options(b.config.evaluation)) return;
     throw InputError(fmt::format(
         "the runs \"{}\" ({}) and \"{}\" ({}) are the same job, {}, and differ in their protocol, of which a run has "
-        "one; expected \"evaluation\" to be no axis: evbench score DIR --set evaluation.KEY=VALUE scores a sweep again",
+        "one; expected \"evaluation\" to be no axis: evbench score DIR --protocol NAME, or --set evaluation.KEY=VALUE, "
+        "scores a sweep again",
         a.config.label, place_of(a.axes), b.config.label, place_of(b.axes), a.identity.key));
   }
 

@@ -33,10 +33,10 @@ struct PoseFileOptions {
 
 struct PoseFile {
   PoseTrajectory trajectory;
-  BodyVelocities velocities;         ///< at its poses, if requested; without angular velocities, which are zero
-  std::vector<std::string> remarks;  ///< sentences: assumptions and omissions
-  bool numbered = false;             ///< times are the numbers of the poses
-  std::string unknown_unit = {};     ///< why the unit of the times is unknown (they are unchanged); empty: seconds
+  BodyVelocities velocities = {};         ///< at its poses, if requested; without angular velocities, which are zero
+  std::vector<std::string> remarks = {};  ///< sentences: assumptions and omissions
+  bool numbered = false;                  ///< times are the numbers of the poses
+  std::string unknown_unit = {};          ///< why the unit of the times is unknown (they are unchanged); empty: seconds
   QuaternionOrder quaternion = QuaternionOrder::automatic;  ///< as read; automatic: none of the others
   bool quaternion_is_assumed = false;                       ///< neither names nor options give its order
 };

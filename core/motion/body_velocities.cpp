@@ -6,7 +6,7 @@
 namespace evbench {
 
 std::optional<Vector6> BodyVelocities::at(double t) const {
-  constexpr double kFarthest = 0.1;  // [s]
+  constexpr double kFarthest = 0.25;  // [s]
   const auto right = std::ranges::lower_bound(velocities_, t, {}, &StampedVelocity::t);
   if (right == velocities_.end()) return std::nullopt;
   if (right->t == t) return right->velocity;

@@ -24,7 +24,7 @@ class BodyVelocities {
   const std::vector<StampedVelocity>& all() const { return velocities_; }
   bool empty() const { return velocities_.empty(); }
 
-  /// At t, linearly between neighbours that are at most 0.1 s apart; none elsewhere.
+  /// At t, linearly between neighbours that are at most 0.25 s apart; none elsewhere.
   std::optional<Vector6> at(double t) const;
 
  private:

@@ -53,7 +53,7 @@ def runs_of(folder):
 
 def versions_of(job):
     for part in ("source", "frontend", "backend"):
-        yield job[part]["type"], job[part]["version"]
+        yield f'{part} {job[part]["type"]}', job[part]["version"]
 
 
 def manifest(name, folder, seconds):
@@ -130,15 +130,18 @@ def make(program, names):
         before = json.loads(record.read_text()).get("seconds", 0) if record.exists() else 0
         made = manifest(name, folder, max(before, time.monotonic() - begin))
         write_csv(program, folder.relative_to(ROOT), REFERENCE / f"{name}.csv")
+        made["csv"] = digest((REFERENCE / f"{name}.csv").read_text())
         made["tables"] = {page: fill(program, ROOT / page) for page in experiment["pages"]}
         record.write_text(json.dumps(made, indent=1) + "\n")
 
 
 def present_versions(program):
-    versions = {}
+    versions, part = {}, ""
     for line in output(program, "evbench list").splitlines():
-        if found := re.match(r"  (\S+) +(\d+) +\S", line):
-            versions[found[1]] = int(found[2])
+        if found := re.match(r"(\w+) \(version", line):
+            part = found[1]
+        elif found := re.match(r"  (\S+) +(\d+) +\S", line):
+            versions[f"{part} {found[1]}"] = int(found[2])
     return versions
 
 
@@ -154,9 +157,11 @@ def check(program):
         made = json.loads(record.read_text())
         tables.update(made["tables"])
         for plugin, version in made["plugins"].items():
-            if plugin in now and now[plugin] != version:
-                faults.append(f"{experiment['name']}: was made with {plugin} {version}, the program has {now[plugin]}; "
-                              f"results/reference/make.py {experiment['name']}")
+            if now.get(plugin) != version:
+                faults.append(f"{experiment['name']}: was made with {plugin} {version}, the program has "
+                              f"{now.get(plugin, 'none')}; results/reference/make.py {experiment['name']}")
+        if digest((REFERENCE / f"{experiment['name']}.csv").read_text()) != made["csv"]:
+            faults.append(f"{experiment['name']}.csv is not as it was made")
     for page, known in tables.items():
         if digests((ROOT / page).read_text()) != known:
             faults.append(f"{page}: a table is not as it was made")
