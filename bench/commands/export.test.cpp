@@ -132,7 +132,7 @@ TEST_CASE("An impossible export is an error that says what is expected, and no f
   const Sequence sequence;
   sequence.refused("c.json", "nothing to export; expected at least one of --groundtruth");
   sequence.refused("c.json --errors e.csv",
-                   "c.json: --aligned, --errors, --evo and --rpg are of a run; expected its folder");
+                   "c.json: --aligned, --errors, --evo, --rpg and --at are of a run; expected its folder");
   sequence.refused("c.json --evo e.txt", "--evo e.txt: expected a name that ends with .zip");
   sequence.refused("none.json --tracks t.txt", "none.json: no such file");
   sequence.refused(". --errors e.csv", ".: has no metrics.json; expected the folder of a run");

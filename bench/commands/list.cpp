@@ -19,7 +19,7 @@ namespace {
 
 template <class Interface>
 void list(const Plugins& plugins) {
-  fmt::print("{} (version of its results):\n", PluginKind<Interface>::name);
+  fmt::print("{}:\n", PluginKind<Interface>::name);
   for (const auto& [name, entry] : plugins.of<Interface>().entries()) {
     const std::string origin = entry.origin == kBuiltIn ? "" : fmt::format(" ({})", entry.origin);
     fmt::print("  {:<20} {:>2}  {}{}\n", name, entry.version, entry.text, origin);
@@ -44,8 +44,8 @@ bool describe(const Plugins& plugins, const std::string& kind, const std::string
 
 void add_list(CLI::App& app, const Plugins& plugins) {
   auto what = std::make_shared<std::string>();
-  CLI::App* command =
-      app.add_subcommand("list", "List sources, front-ends, back-ends, formats of events and protocols of scores");
+  CLI::App* command = app.add_subcommand(
+      "list", "List sources, front-ends, back-ends with the versions of their results, formats of events, protocols");
   command->add_option("what", *what, "protocols: how each of them scores, and who publishes by it")
       ->check(one_of({"protocols"}));
   command->callback([what, &plugins] {

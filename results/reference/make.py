@@ -138,7 +138,7 @@ def make(program, names):
 def present_versions(program):
     versions, part = {}, ""
     for line in output(program, "evbench list").splitlines():
-        if found := re.match(r"(\w+) \(version", line):
+        if found := re.match(r"(\w+):$", line):
             part = found[1]
         elif found := re.match(r"  (\S+) +(\d+) +\S", line):
             versions[f"{part} {found[1]}"] = int(found[2])
