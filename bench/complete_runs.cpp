@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "bench/run_folder.hpp"
+#include "core/io/file_content.hpp"
 #include "core/io/sha256.hpp"
 #include "core/plugin/write_options.hpp"
 #include "core/support/json.hpp"
@@ -18,22 +17,13 @@ namespace evbench {
 namespace fs = std::filesystem;
 namespace {
 
-/// A file's content; none if it can't be read.
-std::optional<std::string> content_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 bool is_complete(const std::string& folder, const JobIdentity& identity) {
   std::string ignored;
   return condition_of(folder, identity.key, ignored) == RunCondition::complete;
 }
 
 Json parse(const std::string& path) {
-  const std::optional<std::string> text = content_of(path);
+  const std::optional<std::string> text = file_content(path);
   if (!text) throw InputError(fmt::format("{}: can't be read", path));
   const Json json = try_parse_json(*text);
   if (!json.is_object()) throw InputError(fmt::format("{}: expected a JSON object", path));
@@ -44,19 +34,19 @@ Json parse(const std::string& path) {
 /// versions have no list of sizes.
 std::string damage_of(const std::string& folder, const std::string& key) {
   std::error_code error;
-  if (!key.ends_with("-" + digits_of_key(content_of(folder + "/job.json").value_or("")))) {
+  if (!key.ends_with("-" + digits_of_key(file_content(folder + "/job.json").value_or("")))) {
     return fmt::format("{}/job.json: belongs to another job; expected that of {}", folder, key);
   }
   for (const char* name :
        {"config.json", "manifest.json", "final.tum", "causal.tum", "causal_poses.txt", "map.ply", "log.txt"}) {
-    if (!fs::is_regular_file(folder + "/" + name, error)) return fmt::format("{}/{}: is missing", folder, name);
+    if (!is_file(folder + "/" + name)) return fmt::format("{}/{}: is missing", folder, name);
   }
   try {
     const Json manifest = parse(folder + "/manifest.json");
     if (!manifest.contains("sizes")) return "";
     for (const auto& [name, size] : manifest.at("sizes").items()) {
       const std::string path = folder + "/" + name;
-      if (!fs::is_regular_file(path, error)) return path + ": is missing";
+      if (!is_file(path)) return path + ": is missing";
       if (size == fs::file_size(path, error)) continue;
       return fmt::format("{}: has {} bytes; expected {}", path, fs::file_size(path, error), dump_json(size));
     }
@@ -76,12 +66,12 @@ RunRecord rewrite(const std::string& from, const std::string& to, const Json& co
   AtomicFolder folder(to);
   for (const auto& entry : fs::directory_iterator(from)) {
     const std::string name = entry.path().filename().string();
-    if (entry.is_regular_file()) folder.write(name, content_of(entry.path().string()).value_or(""));
+    if (entry.is_regular_file()) folder.write(name, file_content(entry.path().string()).value_or(""));
   }
   folder.write("config.json", json_file_text(config));
   folder.write("manifest.json", json_file_text(manifest));
   folder.write("metrics.json", json_file_text(to_json(record)));
-  if (!log.empty()) folder.write("log.txt", content_of(from + "/log.txt").value_or("") + log);
+  if (!log.empty()) folder.write("log.txt", file_content(from + "/log.txt").value_or("") + log);
   folder.commit();
   record.folder = to;
   record.settings = settings_of(config);
@@ -129,7 +119,7 @@ RunRecord adopt_run(const std::string& from, const std::string& to, const RunCon
   const Json resolved = config.resolved();
   const std::optional<std::uint64_t> position = config.position ? config.position : record.position;
   const bool same_place = from == to && position == record.position;
-  if (same_place && content_of(from + "/config.json") == json_file_text(resolved)) return record;
+  if (same_place && file_content(from + "/config.json") == json_file_text(resolved)) return record;
   std::string log;
   if (record.experiment != config.experiment || record.label != config.label) {
     log = fmt::format("not run again, but relabelled {}: {}\n", config.experiment, config.label);
@@ -142,7 +132,7 @@ RunRecord adopt_run(const std::string& from, const std::string& to, const RunCon
 
 ScoreOptions protocol_of_run(const std::string& folder, const std::vector<std::string>& overrides) {
   const std::string path = folder + "/config.json";
-  const Json config = try_parse_json(content_of(path).value_or(""));
+  const Json config = try_parse_json(file_content(path).value_or(""));
   if (!config.is_object() || !config.contains("evaluation")) {
     throw InputError(fmt::format("{}: can't be read, or has no \"evaluation\"; expected the config of a run", path));
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/events/formats.hpp"
+#include "core/io/file_content.hpp"
 #include "core/io/path.hpp"
 #include "core/io/spool.hpp"
 #include "core/plugin/write_options.hpp"
@@ -315,10 +316,8 @@ Json read_json(const std::string& path) {
     throw InputError(fmt::format("{}: is a folder; expected a JSON config", path));
   }
   if (path != "-" && !std::filesystem::exists(path, none)) throw InputError(fmt::format("{}: no such file", path));
-  std::ifstream file(seekable_path(path), std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: can't be read; expected a JSON config", path));
-  std::ostringstream text;
-  text << file.rdbuf();
+  const std::optional<std::string> text = file_content(seekable_path(path));
+  if (!text) throw InputError(fmt::format("{}: can't be read; expected a JSON config", path));
   std::vector<std::set<std::string>> keys;  // of the open objects: of two equal keys the parser would drop the first
   const auto take = [&](int, Json::parse_event_t event, const Json& parsed) {
     if (event == Json::parse_event_t::object_start) keys.emplace_back();
@@ -329,8 +328,8 @@ Json read_json(const std::string& path) {
     return true;
   };
   try {
-    return Json::parse(text.str(), take, true, true);  // comments allowed
-  } catch (const Json::exception& error) {             // also for numbers out of range
+    return Json::parse(*text, take, true, true);  // comments allowed
+  } catch (const Json::exception& error) {        // also for numbers out of range
     throw InputError(fmt::format("{}: is not JSON: {}", path, json_reason(error)));
   }
 }

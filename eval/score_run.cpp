@@ -8,6 +8,7 @@
 #include "core/data/causal_poses.hpp"
 #include "core/data/tum.hpp"
 #include "core/data/velocity_file.hpp"
+#include "core/io/file_content.hpp"
 #include "eval/covariance_scores.hpp"
 #include "eval/latency.hpp"
 #include "eval/old_names.hpp"
@@ -20,11 +21,6 @@ OptionSet::List clip(const OptionSet::List& range, const std::optional<TimeRange
   if (!run) return range;
   if (range.size() != 2) return {run->from, run->to};
   return {std::max(range[0], run->from), std::min(range[1], run->to)};
-}
-
-bool exists(const std::string& path) {
-  std::error_code error;
-  return std::filesystem::is_regular_file(path, error);
 }
 
 struct RunTrajectories {
@@ -45,28 +41,11 @@ BodyVelocities published_velocities(const std::string& path) {
 
 RunTrajectories read_trajectories(const std::string& folder, bool causal) {
   const std::string truth = folder + "/groundtruth.tum";
-  return {std::filesystem::exists(truth) ? read_tum(truth) : PoseTrajectory(), read_run_estimate(folder, causal)};
-}
-
-/// Throws InputError with the reason if there are no scores.
-Scores compare(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, ScoreOptions options,
-               const RunRecord& record) {
-  if (estimate.empty()) {  // a run that broke off has no ground truth either
-    const std::string reason = record.status ? record.status->status.reason : "";
-    throw InputError(reason.empty() ? "no trajectory" : "no trajectory: " + reason);
-  }
-  if (ground_truth.empty()) throw InputError(kNoGroundTruth);
-  const OptionSet::List asked = options.time_range;
-  options.time_range = clip(asked, record.range);
-  if (asked.size() == 2 && !(options.time_range[0] < options.time_range[1])) {
-    throw InputError(fmt::format("the time range to evaluate, {} to {} s, is outside of the run's, {} to {} s",
-                                 asked[0], asked[1], record.range->from, record.range->to));
-  }
-  return score(ground_truth, estimate, options);
+  return {is_file(truth) ? read_tum(truth) : PoseTrajectory(), read_run_estimate(folder, {.causal = causal})};
 }
 
 Scores compare_with_velocities(const RunTrajectories& run, const ScoreOptions& options, const RunRecord& record) {
-  Scores scores = compare(run.ground_truth, run.estimate.poses, options, record);
+  Scores scores = score_poses(run.ground_truth, run.estimate.poses, options, record);
   score_velocities(run.ground_truth, {}, run.estimate.poses, run.estimate.velocities, scores);
   return scores;
 }
@@ -77,7 +56,7 @@ Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<Cau
   std::vector<double> times;
   for (const StampedPose& pose : ground_truth.poses()) times.push_back(pose.t - options.time_offset);
   try {
-    Json json = to_json(compare(ground_truth, estimates_at_latency(published, times, latency), options, record));
+    Json json = to_json(score_poses(ground_truth, estimates_at_latency(published, times, latency), options, record));
     json["latency_s"] = latency;
     return json;
   } catch (const InputError&) {
@@ -89,7 +68,7 @@ Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<Cau
 void add_latencies(const std::string& folder, const PoseTrajectory& ground_truth, const ScoreOptions& options,
                    const RunRecord& record, Json& scores) {
   const std::string path = file_of_run(folder, "causal_poses.txt");
-  if (!exists(path)) return;
+  if (!is_file(path)) return;
   const std::vector<CausalPose> published = read_causal_poses(path);
   if (const std::optional<Delay> delay = delay_of(published)) {
     scores["delay_s"] = {{"median", delay->median}, {"p99", delay->p99}, {"max", delay->max}};
@@ -112,18 +91,37 @@ Json covariance_scores(const std::vector<RelativePose>& poses, const PoseTraject
 
 }  // namespace
 
-PoseTrajectory read_estimate(const std::string& path) {
+PoseTrajectory read_run_poses(const std::string& folder, const EstimateName& name) {
+  const std::string path = file_of_run(folder, name.causal ? "causal.tum" : "final" + name.segment + ".tum");
   std::error_code error;
-  const bool empty = std::filesystem::is_regular_file(path, error) && std::filesystem::file_size(path, error) == 0;
+  const bool empty = is_file(path) && std::filesystem::file_size(path, error) == 0;
   return empty ? PoseTrajectory() : read_tum(path);
 }
 
-RunEstimate read_run_estimate(const std::string& folder, bool causal) {
-  const std::string velocities = file_of_run(folder, causal ? "causal_poses.txt" : "velocities.txt");
-  return {read_estimate(file_of_run(folder, causal ? "causal.tum" : "final.tum")),
-          !exists(velocities) ? BodyVelocities()
-          : causal            ? published_velocities(velocities)
-                              : read_velocities(velocities)};
+BodyVelocities read_run_velocities(const std::string& folder, const EstimateName& name) {
+  const std::string path = file_of_run(folder, name.causal ? "causal_poses.txt" : "velocities" + name.segment + ".txt");
+  if (!is_file(path)) return {};
+  return name.causal ? published_velocities(path) : read_velocities(path);
+}
+
+RunEstimate read_run_estimate(const std::string& folder, const EstimateName& name) {
+  return {read_run_poses(folder, name), read_run_velocities(folder, name)};
+}
+
+Scores score_poses(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, ScoreOptions options,
+                   const RunRecord& record) {
+  if (estimate.empty()) {  // a run that broke off has no ground truth either
+    const std::string reason = record.status ? record.status->status.reason : "";
+    throw InputError(reason.empty() ? "no trajectory" : "no trajectory: " + reason);
+  }
+  if (ground_truth.empty()) throw InputError(kNoGroundTruth);
+  const OptionSet::List asked = options.time_range;
+  options.time_range = clip(asked, record.range);
+  if (asked.size() == 2 && !(options.time_range[0] < options.time_range[1])) {
+    throw InputError(fmt::format("the time range to evaluate, {} to {} s, is outside of the run's, {} to {} s",
+                                 asked[0], asked[1], record.range->from, record.range->to));
+  }
+  return score(ground_truth, estimate, options);
 }
 
 void score_run(const std::string& folder, const ScoreOptions& options, RunRecord& record) {
@@ -142,7 +140,7 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
   set(false, record.final_scores, record.final_unscored);
   set(true, record.causal_scores, record.causal_unscored);
   record.covariance = nullptr;
-  if (const std::string path = folder + "/covariance.txt"; exists(path) && !record.final_scores.is_null()) {
+  if (const std::string path = folder + "/covariance.txt"; is_file(path) && !record.final_scores.is_null()) {
     record.covariance = covariance_scores(read_relative_poses(path), read_tum(folder + "/groundtruth.tum"),
                                           record.final_scores.at("scale").get<double>(), options.time_offset);
   }

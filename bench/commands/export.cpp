@@ -124,7 +124,7 @@ void export_run(const ExportArguments& arguments) {
 
 /// Aligned as the run was scored, if it has ground truth.
 void export_samples(const ExportArguments& arguments) {
-  const RunEstimate estimate = read_run_estimate(arguments.from, arguments.causal);
+  const RunEstimate estimate = read_run_estimate(arguments.from, {.causal = arguments.causal});
   if (estimate.poses.empty()) throw InputError(fmt::format("{}: the run has no trajectory", arguments.from));
   Similarity alignment;
   double offset = 0.0;

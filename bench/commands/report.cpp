@@ -4,9 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <sstream>
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/protocol_option.hpp"
@@ -15,6 +13,7 @@
 #include "bench/report/report.hpp"
 #include "bench/scores_by_protocol.hpp"
 #include "core/io/atomic_file.hpp"
+#include "core/io/file_content.hpp"
 #include "eval/find_runs.hpp"
 #include "eval/table.hpp"
 
@@ -31,10 +30,7 @@ constexpr const char* kName = "report.html";
 
 /// Whether an existing file is a report, which may be made anew.
 bool is_report(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str().find(R"(id="data">{"format":"evbench.report",)") != std::string::npos;
+  return file_content(file).value_or("").find(R"(id="data">{"format":"evbench.report",)") != std::string::npos;
 }
 
 std::string file_of(const ReportArguments& arguments) {

@@ -78,6 +78,12 @@ std::optional<double> number_in(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
+bool is_numeric_axis(const RunColumn& column) {
+  const bool names = column.name == "experiment" || column.name == "label" || column.name == "seed";
+  return !names && column.varies() &&
+         std::ranges::all_of(column.values, [](const std::string& value) { return value.empty() || number_in(value); });
+}
+
 void check_numbers(const RunColumn& column) {
   for (const std::string& value : column.values) {
     if (value.empty() || number_in(value)) continue;

@@ -40,6 +40,9 @@ struct FigureRuns {
 /// The number that a whole text is, if it is one.
 std::optional<double> number_in(const std::string& text);
 
+/// Whether the runs differ in this column, and it has numbers alone that are not a name: it can be an axis.
+bool is_numeric_axis(const RunColumn& column);
+
 /// Throws InputError where a column has anything but numbers.
 void check_numbers(const RunColumn& column);
 

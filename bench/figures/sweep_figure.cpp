@@ -13,12 +13,6 @@
 namespace evbench {
 namespace {
 
-bool is_numeric_axis(const RunColumn& column) {
-  const bool names = column.name == "experiment" || column.name == "label" || column.name == "seed";
-  return !names && column.varies() &&
-         std::ranges::all_of(column.values, [](const std::string& value) { return value.empty() || number_in(value); });
-}
-
 /// The requested axis, or the only one that has numbers.
 std::string axis_of(std::span<const RunRecord> runs, const FigureOptions& options) {
   const std::vector<RunColumn> columns = columns_with(runs, options.axis);

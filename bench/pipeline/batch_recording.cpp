@@ -2,11 +2,10 @@
 
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <string_view>
 #include <type_traits>
 
+#include "core/io/file_content.hpp"
 #include "core/io/sha256.hpp"
 #include "core/plugin/options.hpp"
 #include "core/support/json.hpp"
@@ -65,10 +64,7 @@ std::string record_batches(BatchStream& batches) {
 }
 
 std::unique_ptr<RecordedBatches> RecordedBatches::open(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  std::string bytes = text.str();
+  std::string bytes = file_content(path).value_or("");
   if (bytes.size() < kBegin.size() + sizeof(std::uint64_t) + kDigestLength || !bytes.starts_with(kBegin))
     return nullptr;
   const std::string digest = bytes.substr(bytes.size() - kDigestLength);

@@ -69,7 +69,7 @@ RunOverlay::RunOverlay(const std::string& folder, const Camera& camera)
                           camera.height)
                   .observations),
       map_(read_map(file_of(folder, "map.ply", ""))),
-      estimate_(read_estimate(file_of(folder, "final.tum", ""))) {
+      estimate_(read_run_poses(folder, {})) {
   for (const TrackObservation& z : tracks_) times_[z.track].push_back(z.t);
   aligned_ = estimate_.poses();
   if (estimate_.empty()) remark_ = fmt::format("{}: has no trajectory; its tracks are drawn", folder);

@@ -56,7 +56,7 @@ Json times(std::span<const double> values) {
 
 Json coarse(std::span<const double> values) {
   constexpr double kMost = 32767.0;
-  constexpr std::int16_t kMissing = std::numeric_limits<std::int16_t>::min();
+  constexpr std::int16_t kNone = std::numeric_limits<std::int16_t>::min();
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double value : values) {
     if (!std::isfinite(value)) continue;
@@ -70,12 +70,42 @@ Json coarse(std::span<const double> values) {
   bytes.reserve(2 * values.size());
   for (const double value : values) {
     const std::int16_t k =
-        std::isfinite(value) ? static_cast<std::int16_t>(std::lround((value - offset) / scale)) : kMissing;
+        std::isfinite(value) ? static_cast<std::int16_t>(std::lround((value - offset) / scale)) : kNone;
     const auto bits = std::bit_cast<std::uint16_t>(k);
     bytes.push_back(static_cast<char>(bits & 0xffU));
     bytes.push_back(static_cast<char>(bits >> 8U));
   }
   return {{"i16", base64(bytes)}, {"scale", scale}, {"offset", offset}};
+}
+
+Json vectors(const std::vector<Vector3>& values, Json (*column_of)(std::span<const double>)) {
+  Json columns = Json::array();
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> column;
+    for (const Vector3& value : values) column.push_back(value[axis]);
+    columns.push_back(column_of(column));
+  }
+  return columns;
+}
+
+Json orientations(const std::vector<Eigen::Quaterniond>& values) {
+  Json columns = Json::array();
+  for (int k = 0; k < 4; ++k) {
+    std::vector<double> column;
+    for (const Eigen::Quaterniond& value : values) column.push_back(value.coeffs()[k]);
+    columns.push_back(coarse(column));
+  }
+  return columns;
+}
+
+Eigen::Quaterniond on_one_side(const std::vector<Eigen::Quaterniond>& before, const Eigen::Quaterniond& q) {
+  return before.empty() || !(before.back().dot(q) < 0.0) ? q : Eigen::Quaterniond(-q.coeffs());
+}
+
+std::vector<double> chosen(const std::vector<double>& values, const std::vector<std::size_t>& indices) {
+  std::vector<double> result;
+  for (const std::size_t i : indices) result.push_back(values[i]);
+  return result;
 }
 
 }  // namespace evbench::report

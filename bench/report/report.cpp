@@ -1,15 +1,16 @@
 #include "bench/report/report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <exception>
 #include <map>
 #include <set>
 #include <vector>
 
+#include "bench/figures/figure_runs.hpp"
 #include "bench/figures/run_figures.hpp"
 #include "bench/report/run_data.hpp"
 #include "bench/scores_by_protocol.hpp"
@@ -32,9 +33,7 @@ std::string title_of(std::span<const RunRecord> runs) {
     if (std::ranges::find(names, run.experiment) == names.end()) names.push_back(run.experiment);
   }
   if (names.size() > 3) return fmt::format("{} experiments", names.size());
-  std::string title;
-  for (const std::string& name : names) title += (title.empty() ? "" : ", ") + name;
-  return title;
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 Json cell_json(const TextTable::Cell& cell) {
@@ -70,14 +69,6 @@ std::vector<const RunColumn*> varying(const std::vector<RunColumn>& columns) {
   return result;
 }
 
-bool is_numeric(const RunColumn& column) {
-  return column.varies() && std::ranges::all_of(column.values, [](const std::string& value) {
-           char* end = nullptr;
-           std::strtod(value.c_str(), &end);
-           return *end == '\0';
-         });
-}
-
 /// A summary over seeds, if they vary, and a row for each run.
 Json tables(std::span<const RunRecord> runs, const std::vector<RunColumn>& columns) {
   Json result = Json::array();
@@ -103,7 +94,7 @@ Json figures(std::span<const RunRecord> runs, const std::vector<RunColumn>& colu
   };
   std::vector<std::string> axes;
   for (const RunColumn* column : varying(columns)) {
-    if (column->name != "seed" && column->name != "experiment" && is_numeric(*column)) axes.push_back(column->name);
+    if (is_numeric_axis(*column)) axes.push_back(column->name);
   }
   for (const std::string& axis : axes) {
     add("Against " + axis, "against_" + axis, [&] { return sweep_figure(runs, {.axis = axis}); });
@@ -133,9 +124,7 @@ Json about(std::span<const RunRecord> runs) {
     for (const RunRecord& run : runs) {
       if (const std::string text = setting_text(run.settings, path); !text.empty()) values.insert(text);
     }
-    std::string all;
-    for (const std::string& value : values) all += (all.empty() ? "" : ", ") + value;
-    if (!all.empty()) facts.push_back(fact(name, all));
+    if (!values.empty()) facts.push_back(fact(name, fmt::format("{}", fmt::join(values, ", "))));
   }
   std::set<std::uint64_t> seeds;
   for (const RunRecord& run : runs) {
@@ -193,8 +182,7 @@ Json payload(std::span<RunRecord> runs, const std::string& protocol, const std::
     if (is_new) {
       const double from = run.range ? run.range->from : 0.0, to = run.range ? run.range->to : 0.0;
       const std::string name = fmt::format("{}{}", run.experiment, run.seed ? fmt::format(", seed {}", *run.seed) : "");
-      json["sequences"].push_back(
-          {{"name", name}, {"from", from}, {"to", to}, {"camera", nullptr}, {"ground_truth", nullptr}});
+      json["sequences"].push_back({{"name", name}, {"from", from}, {"to", to}, {"ground_truth", nullptr}});
     }
     Json& sequence = json["sequences"][found->second];
     if (sequence["ground_truth"].is_null() && run.done) {

@@ -113,7 +113,6 @@ export interface Sequence {
   name: string;
   from: number; // [s] the time that was run
   to: number; // [s]
-  camera: { width: number; height: number; fx: number; fy: number; cx: number; cy: number } | null; // pixels
   ground_truth: Trajectory | null; // between `from` and `to`
 }
 

@@ -2,8 +2,8 @@
 import { button, describe, element, format } from "./dom";
 import { fileName, saveCsv, saveText } from "./download";
 import type { Run } from "./data";
+import { eventName, signOf } from "./run_events";
 import type { State } from "./state";
-import { eventName, signOf } from "./time_chart";
 import { View } from "./view";
 
 export function statusText(run: Run): string {

@@ -1,7 +1,6 @@
 // The trajectory in 3D: estimates, ground truth, landmarks, control states, losses, and the camera at the time of the
 // cursor. It is drawn when something changes, not all the time.
 import {
-  BufferAttribute,
   BufferGeometry,
   Group,
   LineBasicMaterial,
@@ -20,10 +19,11 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Line2 } from "three/examples/jsm/lines/Line2.js";
 import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
-import type { Columns3, Run, Trajectory } from "./data";
-import { columns3, lastUpTo, numbers, orientationAt, valueAt, vectorAt } from "./decode";
+import type { Run, Trajectory } from "./data";
+import { lastUpTo, numbers, orientationAt, valueAt, vectorAt } from "./decode";
 import { button, element, format } from "./dom";
 import { fileName, saveBlob } from "./download";
+import { geometryOf, points, roundLength, stretches } from "./scene_geometry";
 import { lossesOf } from "./sides";
 import type { State } from "./state";
 import { colourOf, colours } from "./theme";
@@ -32,7 +32,6 @@ import { estimatesOf } from "./time_plots";
 import { View } from "./view";
 
 const FRUSTUM = 0.1; // depth of the camera's pyramid, of the size of the trajectory
-const MOST_POINTS = 2000; // of a trajectory, about: more cannot be seen, and take time without a graphics card
 const LANDMARK_SHARE = 0.95; // of the landmarks are in the first view: some are very far away
 
 /// A part of a trajectory that grows with time: a strong line up to the cursor, a faint one of all.
@@ -44,45 +43,6 @@ interface Growing {
 interface CameraMark {
   pyramid: LineSegments;
   trajectories: Trajectory[];
-}
-
-function points(columns: Columns3): Float32Array {
-  const [x, y, z] = columns3(columns);
-  const values: number[] = [];
-  for (let i = 0; i < x.length; ++i) {
-    if (Number.isFinite(x[i])) values.push(x[i] ?? 0, y[i] ?? 0, z[i] ?? 0);
-  }
-  return Float32Array.from(values);
-}
-
-/// Runs of points without a missing one between them.
-function stretches(trajectory: Trajectory): { t: Float64Array; p: Float32Array }[] {
-  const t = numbers(trajectory.t);
-  const [x, y, z] = columns3(trajectory.p);
-  const parts: { t: number[]; p: number[] }[] = [];
-  let open: { t: number[]; p: number[] } | null = null;
-  const step = Math.max(1, Math.floor(t.length / MOST_POINTS));
-  for (let i = 0; i < t.length; ++i) {
-    if (!Number.isFinite(x[i])) {
-      open = null;
-      continue;
-    }
-    if (open && i % step !== 0 && i !== t.length - 1) continue;
-    if (!open) parts.push((open = { t: [], p: [] }));
-    open.t.push(t[i] ?? NaN);
-    open.p.push(x[i] ?? 0, y[i] ?? 0, z[i] ?? 0);
-  }
-  return parts.filter((part) => part.t.length > 1).map((part) => ({ t: Float64Array.from(part.t), p: Float32Array.from(part.p) }));
-}
-
-function geometryOf(values: Float32Array): BufferGeometry {
-  return new BufferGeometry().setAttribute("position", new BufferAttribute(values, 3));
-}
-
-/// 1, 2 or 5 times a power of ten, not above `most`.
-function roundLength(most: number): number {
-  const decade = 10 ** Math.floor(Math.log10(most));
-  return decade * (most >= 5 * decade ? 5 : most >= 2 * decade ? 2 : 1);
 }
 
 class SceneView {
@@ -307,11 +267,8 @@ class SceneView {
 
   /// The camera: its centre, the corners of its image, and a triangle on the image's upper side. y points down.
   private pyramid(colour: string): LineSegments {
-    const camera = this.state.sequence?.camera;
     const depth = FRUSTUM * this.size;
-    const [left, right, top, bottom] = camera
-      ? [-camera.cx / camera.fx, (camera.width - camera.cx) / camera.fx, -camera.cy / camera.fy, (camera.height - camera.cy) / camera.fy]
-      : [-0.6, 0.6, -0.45, 0.45];
+    const [left, right, top, bottom] = [-0.6, 0.6, -0.45, 0.45]; // a usual field of view: runs do not keep their camera
     const corners = [
       [left * depth, top * depth, depth],
       [right * depth, top * depth, depth],

@@ -5,10 +5,10 @@ import { Chart, type Drawing, type Option } from "./chart";
 import type { Columns3, Trajectory } from "./data";
 import { columns3, numbers, vectorAt, type Vector3 } from "./decode";
 import { element, formatTick } from "./dom";
+import { legendOption, type LegendEntry } from "./legend";
 import type { State } from "./state";
 import { colourOf, dashOf, type Colours } from "./theme";
 import { estimatesOf } from "./time_plots";
-import { legendOption, type LegendEntry } from "./time_chart";
 
 const SIDES: [number, number][] = [
   [0, 1],

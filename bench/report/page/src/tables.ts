@@ -3,9 +3,9 @@
 import type { Cell, Table } from "./data";
 import { button, element } from "./dom";
 import { saveCsv } from "./download";
+import { swatch } from "./legend";
 import { MOST_COMPARED, type State } from "./state";
 import { colourOf, dashOf } from "./theme";
-import { swatch } from "./time_chart";
 
 interface Row {
   runs: number[];

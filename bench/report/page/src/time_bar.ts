@@ -1,8 +1,10 @@
 // The bar at the bottom: play, time, zoom and the runs that are shown. All views follow it.
 import { button, element, format } from "./dom";
+import { swatch } from "./legend";
+import { eventButtons } from "./run_events";
 import type { State } from "./state";
 import { colourOf, dashOf } from "./theme";
-import { eventButtons, swatch, timeKeys } from "./time_chart";
+import { timeKeys } from "./time_chart";
 
 const STEPS = 2000; // of the slider
 const SPEEDS = [0.25, 0.5, 1, 2, 5, 10, 20];

@@ -4,7 +4,8 @@ import { angles, columns3, numbers } from "./decode";
 import { element } from "./dom";
 import type { State } from "./state";
 import { colourOf, dashOf, type Colours } from "./theme";
-import { TimeChart, type TimePanel, type TimeSeries } from "./time_chart";
+import { TimeChart } from "./time_chart";
+import type { TimePanel, TimeSeries } from "./time_panels";
 
 type Three = [Float64Array, Float64Array, Float64Array];
 const DEGREES = 180 / Math.PI;

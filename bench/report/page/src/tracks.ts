@@ -5,7 +5,8 @@ import { numbers } from "./decode";
 import { element } from "./dom";
 import type { State } from "./state";
 import { colourOf, dashOf, type Colours } from "./theme";
-import { TimeChart, type TimePanel, type TimeSeries } from "./time_chart";
+import { TimeChart } from "./time_chart";
+import type { TimePanel, TimeSeries } from "./time_panels";
 
 function trackPanels(state: State, of: Colours): TimePanel[] {
   const tracks = state.run?.tracks;

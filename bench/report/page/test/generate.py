@@ -50,8 +50,7 @@ class Generator:
     def sequence(self, name, duration, samples, truth=True):
         t = np.linspace(0, duration, samples)
         p, q = self.motion(t, self.random.uniform(0, 6, 3))
-        camera = {"width": 240, "height": 180, "fx": 200, "fy": 200, "cx": 119.5, "cy": 89.5}
-        return {"name": name, "from": 0, "to": duration, "camera": camera, "ground_truth": self.trajectory(t, p, q) if truth else None}, (t, p, q)
+        return {"name": name, "from": 0, "to": duration, "ground_truth": self.trajectory(t, p, q) if truth else None}, (t, p, q)
 
     def run(self, name, label, sequence, number, data, size, state="ok", tracks=100, landmarks=100, lean=False):
         t, p, q = data
