@@ -104,7 +104,7 @@ std::string find_paper_configs(const std::string& asked) {
   }
   throw InputError(
       fmt::format("{}: there is no such folder here, and no {}. The paper's configs are in evbench's repository: "
-                  "expected its folder as the working folder, or --configs REPOSITORY/{}",
+                  "expected its folder as the working folder, or for evbench reproduce --configs REPOSITORY/{}",
                   kConfigs, installed, kConfigs));
 }
 

@@ -83,9 +83,8 @@ void add_report(CLI::App& app) {
                     "Score by a published protocol (evbench list protocols) for this page; the runs stay as they are");
   command->add_flag("--force", arguments->force, "Replace a file that exists; a report is replaced without it");
   command->footer(
-      "The page is one file that needs no network and no other file: send it, or open it from the disk. Curves of "
-      "many\n"
-      "runs are thinned, so that a page of 100 runs of 60 s stays below 5 MB.");
+      "The page is one file that needs no network and no other file: send it, or open it from the disk.\n"
+      "Curves of many runs are thinned, so that a page of 100 runs of 60 s stays below 5 MB.");
   command->callback([arguments] { execute(*arguments); });
 }
 
