@@ -10,13 +10,13 @@ namespace evbench::gp_map {
 std::optional<SE3> Estimate::pose(double t) const {
   const int k = graph().interval_of(t);
   if (k < 0) return std::nullopt;
-  return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).pose(t);
+  return graph().interval(k).pose(t);
 }
 
 std::optional<Vector6> Estimate::velocity(double t) const {
   const int k = graph().interval_of(t);
   if (k < 0) return std::nullopt;
-  return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).velocity(t);
+  return graph().interval(k).velocity(t);
 }
 
 double Estimate::median_depth() const {

@@ -193,7 +193,7 @@ void GpMap::predict_next_state() {
     std::optional<double> deviation;
     const TrackTable::Track* const track = tracks_.find(z.track);
     if (track == nullptr || track->role != TrackTable::Role::landmark || track->mismatched) return deviation;
-    const SE3 T = extrapolate(newest, z.t - newest.t).T;
+    const SE3 T = extrapolate(newest, z.t - newest.t, graph().motion_prior).T;
     const Vector3 point = T.inverse() * graph().landmarks[index(track->landmark)].position;
     if (point.z() > 0.0) {
       deviation = (z.noise.whitening() * Vector2(graph().camera.project(point) - z.pixel)).norm() / noise;

@@ -11,8 +11,12 @@ void HealthOptions::declare(OptionSet& set) {
 
 void Options::declare(OptionSet& set) {
   set.group("placement", placement, "control states");
+  set.add("prior", prior, {"wnoa", "singer"},
+          "motion prior: wnoa, white noise on acceleration; singer: the same noise smoothed over 1/prior_rate, with "
+          "accelerations as unknowns, better in violent motion at twice the time");
+  set.add("prior_rate", prior_rate, "how fast accelerations fade with the prior singer [1/s]").range(0.1, 1e4);
   set.add("qc", qc,
-          "diagonal of the WNOA prior's power spectral density: rotation x y z [rad^2/s^3], translation x y z "
+          "diagonal of the prior's power spectral density: rotation x y z [rad^2/s^3], translation x y z "
           "[units^2/s^3]; a unit is the median distance of the initial map's landmarks from its first view")
       .size(6)
       .above(0.0);

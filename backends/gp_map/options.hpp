@@ -20,6 +20,9 @@
 
 namespace evbench::gp_map {
 
+/// What the motion between control states is expected to be (core/motion/motion_prior.hpp).
+enum class PriorKind { wnoa, singer };
+
 /// When too few landmarks are seen.
 struct HealthOptions {
   int min_landmarks = 6;
@@ -30,6 +33,8 @@ struct HealthOptions {
 
 struct Options {
   PlacementOptions placement;
+  PriorKind prior = PriorKind::wnoa;
+  double prior_rate = 20.0;
   std::vector<double> qc = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
   double qc_scale = 1.0;
   RobustLoss::Kind loss = RobustLoss::Kind::cauchy;

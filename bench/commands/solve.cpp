@@ -104,6 +104,10 @@ void add_solve(CLI::App& app) {
   command->add_option("--iterations", arguments->options.max_iterations, "Iterations of batch mode, at most")
       ->check(above_zero())
       ->capture_default_str();
+  command
+      ->add_option("--singer", arguments->options.motion_prior.rate,
+                   "Singer's motion prior with this rate [1/s]; otherwise white noise on acceleration")
+      ->check(above_zero());
   smoother::SmootherOptions& engine = arguments->options.engine;
   command->add_option("--relinearise", engine.relinearise, "Relinearise and redo from increments of this size [rad]")
       ->check(not_negative())

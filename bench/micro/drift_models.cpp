@@ -165,7 +165,7 @@ PoseTrajectory sample(const FactorGraph& graph, double rate) {
   for (int i = 0; start + i / rate <= end; ++i) {
     const double t = start + i / rate;
     const int k = graph.interval_of(t);
-    poses.push_back({t, GpInterval(graph.states[index(k - 1)], graph.states[index(k)]).pose(t)});
+    poses.push_back({t, graph.interval(k).pose(t)});
   }
   return PoseTrajectory(std::move(poses));
 }

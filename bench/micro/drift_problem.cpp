@@ -86,7 +86,7 @@ NormalEquations DriftProblem::linearise() const {
 /// its landmark.
 void DriftProblem::add_interval(int k, NormalEquations& equations) const {
   const int x0 = layout_.state_offset[index(k - 1)], x1 = layout_.state_offset[index(k)];
-  const GpInterval interval(graph_.states[index(k - 1)], graph_.states[index(k)]);
+  const GpInterval interval = graph_.interval(k);
   const GpInterval::Derivatives derivatives = interval.derivatives();
   const IntervalObservations& observations = graph_.intervals[index(k)];
   for (const auto& group : observations.groups()) {

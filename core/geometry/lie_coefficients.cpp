@@ -13,6 +13,7 @@ template <std::size_t N>
 CoefficientJet series(const std::array<double, N>& coefficients, double z) {
   CoefficientJet jet;
   for (std::size_t k = N; k-- > 0;) {  // Horner, with derivatives
+    jet.ddd = jet.ddd * z + 3.0 * jet.dd;
     jet.dd = jet.dd * z + 2.0 * jet.d;
     jet.d = jet.d * z + jet.f;
     jet.f = jet.f * z + coefficients[k];
@@ -54,6 +55,7 @@ CoefficientJet sinc(double z) {
   a.f = std::sin(theta) / theta;
   a.d = (std::cos(theta) - a.f) / (2.0 * z);
   a.dd = (-0.5 * a.f - 3.0 * a.d) / (2.0 * z);
+  a.ddd = (-0.5 * a.d - 5.0 * a.dd) / (2.0 * z);
   return a;
 }
 
@@ -67,6 +69,7 @@ CoefficientJet coefficient_b(double z) {
   b.f = (1.0 - std::cos(std::sqrt(z))) / z;
   b.d = (a.f - 2.0 * b.f) / (2.0 * z);
   b.dd = (a.d - 4.0 * b.d) / (2.0 * z);
+  b.ddd = (a.dd - 6.0 * b.dd) / (2.0 * z);
   return b;
 }
 
@@ -78,6 +81,7 @@ CoefficientJet coefficient_c(double z) {
   c.f = (1.0 - sinc(z).f) / z;
   c.d = (b.f - 3.0 * c.f) / (2.0 * z);
   c.dd = (b.d - 5.0 * c.d) / (2.0 * z);
+  c.ddd = (b.dd - 7.0 * c.dd) / (2.0 * z);
   return c;
 }
 
@@ -90,10 +94,12 @@ CoefficientJet inverse_jacobian_coefficient(double z) {
   f.f = a.f / (2.0 * b.f);
   f.d = (a.d - 2.0 * f.f * b.d) / (2.0 * b.f);
   f.dd = (a.dd - 4.0 * f.d * b.d - 2.0 * f.f * b.dd) / (2.0 * b.f);
+  f.ddd = (a.ddd - 6.0 * f.dd * b.d - 6.0 * f.d * b.dd - 2.0 * f.f * b.ddd) / (2.0 * b.f);
   CoefficientJet h;
   h.f = (1.0 - f.f) / z;
   h.d = (-f.d - h.f) / z;
   h.dd = (-f.dd - 2.0 * h.d) / z;
+  h.ddd = (-f.ddd - 3.0 * h.dd) / z;
   return h;
 }
 

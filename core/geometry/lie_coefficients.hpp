@@ -2,11 +2,12 @@
 
 namespace evbench {
 
-/// A scalar function of z = θ² with its first two derivatives with respect to z.
+/// A scalar function of z = θ² with its first three derivatives with respect to z.
 struct CoefficientJet {
-  double f = 0.0;   ///< value
-  double d = 0.0;   ///< first derivative with respect to z
-  double dd = 0.0;  ///< second derivative with respect to z
+  double f = 0.0;    ///< value
+  double d = 0.0;    ///< first derivative with respect to z
+  double dd = 0.0;   ///< second derivative with respect to z
+  double ddd = 0.0;  ///< third derivative with respect to z
 };
 
 /// The analytic functions of z = θ² in exp, log and the Jacobians of SO(3) and SE(3):

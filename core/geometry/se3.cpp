@@ -1,5 +1,7 @@
 #include "core/geometry/se3.hpp"
 
+#include <array>
+
 #include "core/geometry/lie_coefficients.hpp"
 #include "core/geometry/so3.hpp"
 
@@ -12,6 +14,7 @@ namespace {
 struct AdPolynomial {
   double k1 = 0.0, k2 = 0.0, k3 = 0.0, k4 = 0.0;
   double d1 = 0.0, d2 = 0.0, d3 = 0.0, d4 = 0.0;
+  double dd2 = 0.0, dd4 = 0.0;  ///< of J_r⁻¹
 };
 
 AdPolynomial right_jacobian_polynomial(double z) {
@@ -37,6 +40,8 @@ AdPolynomial right_jacobian_inverse_polynomial(double z) {
   p.k4 = -h.d;
   p.d2 = -z * h.dd;
   p.d4 = -h.dd;
+  p.dd2 = -h.dd - z * h.ddd;
+  p.dd4 = -h.ddd;
   return p;
 }
 
@@ -107,6 +112,35 @@ Matrix6 d_right_jacobian(const Vector6& xi, const Vector6& v) {
 
 Matrix6 d_right_jacobian_inverse(const Vector6& xi, const Vector6& v) {
   return differentiate(right_jacobian_inverse_polynomial(xi.head<3>().squaredNorm()), xi, v);
+}
+
+/// By recursion over the powers of a = ad(ξ): with the dot for the derivative along ξ', u_n = aⁿ v has
+/// u̇_n = ad(ξ') u_{n−1} + a u̇_{n−1}, and ∂u_n/∂ξ and ∂u̇_n/∂ξ follow by ∂(ad(ξ) u)/∂ξ = −ad(u).
+InverseRate right_jacobian_inverse_rate(const Vector6& xi, const Vector6& xi_rate, const Vector6& v,
+                                        const Vector6& v_rate) {
+  const AdPolynomial p = right_jacobian_inverse_polynomial(xi.head<3>().squaredNorm());
+  const std::array<double, 5> k = {1.0, p.k1, p.k2, p.k3, p.k4}, d = {0.0, p.d1, p.d2, p.d3, p.d4},
+                              dd = {0.0, 0.0, p.dd2, 0.0, p.dd4};
+  const Matrix6 a = ad(xi), a_rate = ad(xi_rate);
+  const double z_rate = 2.0 * xi.head<3>().dot(xi_rate.head<3>());
+  Vector6 u = v, u_rate = Vector6::Zero();
+  Matrix6 U = Matrix6::Zero(), U_rate = Matrix6::Zero();              // by ξ
+  Matrix6 power = Matrix6::Identity(), power_rate = Matrix6::Zero();  // aⁿ
+  InverseRate result{evaluate(p, xi) * v_rate, differentiate(p, xi, v_rate), Matrix6::Zero()};
+  for (std::size_t n = 1; n <= 4; ++n) {
+    U_rate = (a_rate * U - ad(u_rate) + a * U_rate).eval();
+    U = (a * U - ad(u)).eval();
+    u_rate = (a_rate * u + a * u_rate).eval();
+    u = (a * u).eval();
+    power_rate = (a_rate * power + a * power_rate).eval();
+    power = (a * power).eval();
+    result.value += k[n] * u_rate + d[n] * z_rate * u;
+    result.by_v += k[n] * power_rate + d[n] * z_rate * power;
+    result.by_xi += k[n] * U_rate + d[n] * z_rate * U;
+    result.by_xi.leftCols<3>() += 2.0 * (d[n] * u_rate + dd[n] * z_rate * u) * xi.head<3>().transpose() +
+                                  2.0 * d[n] * u * xi_rate.head<3>().transpose();
+  }
+  return result;
 }
 
 }  // namespace evbench::se3

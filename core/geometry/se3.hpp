@@ -50,5 +50,14 @@ Matrix6 right_jacobian_inverse(const Vector6& xi);
 Matrix6 d_right_jacobian(const Vector6& xi, const Vector6& v);
 Matrix6 d_right_jacobian_inverse(const Vector6& xi, const Vector6& v);
 
+/// d/dt(J_r(ξ)⁻¹ v) = J_r(ξ)⁻¹ v' + ∂(J_r(ξ)⁻¹ v)/∂ξ ξ', and its derivatives by ξ and v at constant ξ' and v'. Those by
+/// ξ' and v' are d_right_jacobian_inverse(ξ, v) and J_r(ξ)⁻¹.
+struct InverseRate {
+  Vector6 value;
+  Matrix6 by_xi, by_v;
+};
+InverseRate right_jacobian_inverse_rate(const Vector6& xi, const Vector6& xi_rate, const Vector6& v,
+                                        const Vector6& v_rate);
+
 }  // namespace se3
 }  // namespace evbench

@@ -60,9 +60,10 @@ struct BatchCovariance::Factor {
 BatchCovariance::BatchCovariance(const FactorGraph& graph) : graph_(graph), factor_(std::make_unique<Factor>(graph)) {}
 BatchCovariance::~BatchCovariance() = default;
 
-std::optional<Matrix24> BatchCovariance::neighbours(int k) const {
+std::optional<PairMatrix> BatchCovariance::neighbours(int k) const {
   if (!factor_->usable || k < 0 || index(k + 1) >= graph_.states.size()) return std::nullopt;
-  const Matrix24 joint = factor_->marginal(factor_->layout.state_offset[index(k)], 24);  // neighbours are adjacent
+  // Neighbours are adjacent.
+  const PairMatrix joint = factor_->marginal(factor_->layout.state_offset[index(k)], 2 * factor_->layout.state_size);
   if (!joint.allFinite()) return std::nullopt;
   return joint;
 }
@@ -79,9 +80,9 @@ std::optional<Matrix12> BatchCovariance::poses(int i, int j) const {
 std::optional<Matrix12> BatchCovariance::at(double t) const {
   const int k = graph_.interval_of(t);
   if (k < 1) return std::nullopt;
-  const std::optional<Matrix24> joint = neighbours(k - 1);
+  const std::optional<PairMatrix> joint = neighbours(k - 1);
   if (!joint) return std::nullopt;
-  const GpInterval interval(graph_.states[index(k - 1)], graph_.states[index(k)]);
+  const GpInterval interval = graph_.interval(k);
   return interval.covariance(t, *joint, graph_.qcs[index(k)]);
 }
 

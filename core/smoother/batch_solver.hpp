@@ -31,8 +31,9 @@ class BatchCovariance {
   explicit BatchCovariance(const FactorGraph& graph);
   ~BatchCovariance();
 
-  /// Joint covariance of states k and k + 1, 24 × 24; none if the information matrix is singular.
-  std::optional<Matrix24> neighbours(int k) const;
+  /// Joint covariance of states k and k + 1, 24 × 24 (36 × 36 with Singer's prior); none if the information matrix is
+  /// singular.
+  std::optional<PairMatrix> neighbours(int k) const;
 
   /// Joint covariance of the poses of states i and j.
   std::optional<Matrix12> poses(int i, int j) const;

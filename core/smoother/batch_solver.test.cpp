@@ -93,10 +93,7 @@ TEST_CASE("Marginal covariances equal those of the dense inverse") {
       H.block<24, 3>(12 * (k - 1), l) += coupling.landmark_states.transpose();
     }
   }
-  Matrix12 prior = Matrix12::Zero();
-  Vector12 gradient = Vector12::Zero();
-  add_state_priors(graph, 0, prior, gradient);
-  H.topLeftCorner<12, 12>() += prior;
+  H.topLeftCorner<12, 12>() += state_priors(graph, 0).H;
   H.bottomRightCorner<3 * kLandmarks, 3 * kLandmarks>().diagonal().array() += 1.0;  // landmark priors
   const Eigen::MatrixXd inverse = H.inverse();
   const BatchCovariance covariance(graph);

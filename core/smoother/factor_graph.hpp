@@ -12,8 +12,6 @@
 
 namespace evbench::smoother {
 
-using Matrix24 = Eigen::Matrix<double, 24, 24>;  ///< of two control states
-
 /// An observation of a landmark at its own time, on undistorted pixels.
 struct Observation {
   double t = 0.0;  ///< [s]
@@ -79,8 +77,9 @@ struct ScaleAnchor {
   double nearness(const Vector3& landmark) const { return 1.0 / (1.0 + (landmark - origin).norm() / unit); }
 };
 
-/// The continuous-time structure-from-motion problem: control states in time order joined by the WNOA prior, landmarks,
-/// every observation in the interval of its time, priors. Solvers read factors from here and write estimates back.
+/// The continuous-time structure-from-motion problem: control states in time order joined by the motion prior,
+/// landmarks, every observation in the interval of its time, priors. Solvers read factors from here and write estimates
+/// back.
 struct FactorGraph {
   struct Landmark {
     Vector3 position = Vector3::Zero();  ///< world frame
@@ -91,7 +90,8 @@ struct FactorGraph {
   };
 
   PinholeCamera camera;
-  Vector6 qc = Vector6::Ones();  ///< of the WNOA prior in intervals that are added from now on
+  MotionPrior motion_prior;
+  Vector6 qc = Vector6::Ones();  ///< of the prior in intervals that are added from now on
   RobustLoss loss;
 
   std::vector<ControlState> states;
@@ -106,6 +106,11 @@ struct FactorGraph {
   std::vector<PosePrior> pose_priors;
   std::vector<VelocityPrior> velocity_priors;
   ScaleAnchor anchor;
+
+  int state_size() const { return motion_prior.state_size(); }
+
+  /// Interval k (1 ≤ k) at the estimate.
+  GpInterval interval(int k) const { return {states[index(k - 1)], states[index(k)], motion_prior}; }
 
   /// Appends a state after the newest one, and the motion prior between them.
   void add_state(const ControlState& state);

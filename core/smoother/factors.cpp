@@ -4,15 +4,18 @@
 #include <cmath>
 #include <limits>
 
-#include "core/motion/wnoa.hpp"
-
 namespace evbench::smoother {
+namespace {
+
+Vector6 stationary_variance(const FactorGraph& graph) { return 0.5 * graph.motion_prior.rate * graph.qcs.front(); }
+
+}  // namespace
 
 Cost evaluate(const FactorGraph& graph) {
   Cost cost;
   for (int k = 1; k < static_cast<int>(graph.states.size()); ++k) {
-    const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
-    cost.motion_prior += motion_prior_cost(interval, graph.qcs[index(k)]);
+    const GpInterval interval = graph.interval(k);
+    cost.motion_prior += interval.prior_cost(graph.qcs[index(k)]);
     cost.motion_prior += expansion_cost(graph, k);
     cost.measurements += measurement_cost(graph, k, interval);
   }
@@ -27,6 +30,7 @@ Cost evaluate(const FactorGraph& graph) {
   }
   const double e = residual(graph.anchor, graph);
   cost.priors += 0.5 * e * e;
+  cost.priors += 0.5 * initial_acceleration_residual(graph).squaredNorm();
   return cost;
 }
 
@@ -54,17 +58,17 @@ Vector2 reprojection_residual(const GpInterval& interval, const Vector3& landmar
   return z.whitening * Vector2(camera.project(q) - z.pixel);
 }
 
-double motion_prior_cost(const GpInterval& interval, const Vector6& qc) {
-  const Vector12 e = interval.prior_residual();
-  return 0.5 * e.dot(wnoa::process_information(interval.dt(), qc) * e);
-}
-
 Vector6 residual(const PosePrior& prior, const ControlState& state) {
   return se3::log(prior.T.inverse() * state.T).cwiseQuotient(prior.sigma);
 }
 
 Vector6 residual(const VelocityPrior& prior, const ControlState& state) {
   return (state.velocity - prior.velocity).cwiseQuotient(prior.sigma);
+}
+
+Vector6 initial_acceleration_residual(const FactorGraph& graph) {
+  if (!graph.motion_prior.has_acceleration() || graph.states.empty()) return Vector6::Zero();
+  return graph.states.front().acceleration.cwiseQuotient(stationary_variance(graph).cwiseSqrt());
 }
 
 Vector3 residual(const LandmarkPrior& prior, const Vector3& position) {
@@ -85,29 +89,38 @@ void to_anchored_scale(FactorGraph& graph) {
     for (ControlState& state : graph.states) {
       state.T.p = origin + factor * (state.T.p - origin);
       state.velocity.tail<3>() *= factor;
+      state.acceleration.tail<3>() *= factor;
     }
     for (FactorGraph::Landmark& l : graph.landmarks) l.position = origin + factor * (l.position - origin);
   }
 }
 
-void add_state_priors(const FactorGraph& graph, int state, Matrix12& H, Vector12& g) {
-  add_state_priors(graph, state, graph.states[index(state)], H, g);
+StateSystem state_priors(const FactorGraph& graph, int state) {
+  return state_priors(graph, state, graph.states[index(state)]);
 }
 
-void add_state_priors(const FactorGraph& graph, int state, const ControlState& x, Matrix12& H, Vector12& g) {
+StateSystem state_priors(const FactorGraph& graph, int state, const ControlState& x) {
+  const int n = graph.state_size();
+  StateSystem system{StateMatrix::Zero(n, n), StateVector::Zero(n)};
   for (const PosePrior& prior : graph.pose_priors) {
     if (prior.state != state) continue;
     const Vector6 whiten = prior.sigma.cwiseInverse();
     const Matrix6 J = whiten.asDiagonal() * se3::right_jacobian_inverse(se3::log(prior.T.inverse() * x.T));
-    H.topLeftCorner<6, 6>() += J.transpose() * J;
-    g.head<6>() += J.transpose() * residual(prior, x);
+    system.H.topLeftCorner<6, 6>() += J.transpose() * J;
+    system.g.head<6>() += J.transpose() * residual(prior, x);
   }
   for (const VelocityPrior& prior : graph.velocity_priors) {
     if (prior.state != state) continue;
     const Vector6 whiten = prior.sigma.cwiseInverse();
-    H.bottomRightCorner<6, 6>().diagonal() += whiten.cwiseAbs2();
-    g.tail<6>() += whiten.cwiseProduct(residual(prior, x));
+    system.H.block<6, 6>(6, 6).diagonal() += whiten.cwiseAbs2();
+    system.g.segment<6>(6) += whiten.cwiseProduct(residual(prior, x));
   }
+  if (state == 0 && graph.motion_prior.has_acceleration()) {
+    const Vector6 information = stationary_variance(graph).cwiseInverse();
+    system.H.bottomRightCorner<6, 6>().diagonal() += information;
+    system.g.tail<6>() += information.cwiseProduct(x.acceleration);
+  }
+  return system;
 }
 
 double scene_distance(const FactorGraph& graph, int k) {
@@ -125,9 +138,8 @@ double expansion_cost(const FactorGraph& graph, int k) {
 }
 
 double interval_cost(const FactorGraph& graph, int k) {
-  const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
-  return motion_prior_cost(interval, graph.qcs[index(k)]) + expansion_cost(graph, k) +
-         measurement_cost(graph, k, interval);
+  const GpInterval interval = graph.interval(k);
+  return interval.prior_cost(graph.qcs[index(k)]) + expansion_cost(graph, k) + measurement_cost(graph, k, interval);
 }
 
 double state_prior_cost(const FactorGraph& graph, int state) {
@@ -139,6 +151,7 @@ double state_prior_cost(const FactorGraph& graph, int state) {
   for (const VelocityPrior& prior : graph.velocity_priors) {
     if (prior.state == state) cost += 0.5 * residual(prior, x).squaredNorm();
   }
+  if (state == 0) cost += 0.5 * initial_acceleration_residual(graph).squaredNorm();
   return cost;
 }
 

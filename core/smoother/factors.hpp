@@ -20,7 +20,7 @@ template <class Visit>
 void for_each_observation(const FactorGraph& graph, int landmark, const TimeSpan& span, Visit visit) {
   for (const int k : graph.landmarks[index(landmark)].intervals) {
     if (!span.overlaps(graph.states[index(k - 1)].t, graph.states[index(k)].t)) continue;
-    const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
+    const GpInterval interval = graph.interval(k);
     for (const Observation& z : graph.intervals[index(k)].of(landmark)) visit(interval, z);
   }
 }
@@ -29,9 +29,10 @@ void for_each_observation(const FactorGraph& graph, int landmark, const TimeSpan
 /// Behind the camera both components are 2 fx/σ, constant.
 Vector2 reprojection_residual(const GpInterval& interval, const Vector3& landmark, const Observation& z,
                               const PinholeCamera& camera);
-double motion_prior_cost(const GpInterval& interval, const Vector6& qc);  ///< ½ ‖residual‖²
 Vector6 residual(const PosePrior& prior, const ControlState& state);
 Vector6 residual(const VelocityPrior& prior, const ControlState& state);
+/// With Singer's prior the first state's acceleration has its stationary distribution; zero without.
+Vector6 initial_acceleration_residual(const FactorGraph& graph);
 Vector3 residual(const LandmarkPrior& prior, const Vector3& position);  ///< zero without a prior
 double residual(const ScaleAnchor& anchor, const FactorGraph& graph);   ///< zero without an anchor
 /// Scales the estimate about the anchor's origin to the anchored scale.
@@ -48,8 +49,8 @@ double interval_cost(const FactorGraph& graph, int k);
 double state_prior_cost(const FactorGraph& graph, int state);
 double mean_nearness(const FactorGraph& graph);  ///< of the scale anchor's landmarks; 0 without any
 
-using Vector24 = Eigen::Matrix<double, 24, 1>;
-using Matrix3x24 = Eigen::Matrix<double, 3, 24>;
+using PairVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 36, 1>;
+using Matrix3xPair = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 36>;
 
 /// Reprojection errors of some observations.
 struct ErrorSum {
@@ -62,17 +63,17 @@ struct ErrorSum {
 std::vector<ErrorSum> reprojection_errors(const FactorGraph& graph, int k);
 
 /// Contribution of one interval to the normal equations H δ = −g, H = Σ JᵀJ, g = Σ Jᵀe. State columns are the
-/// increments (pose, velocity) of state k−1, then of state k.
+/// increments of state k−1, then of state k, 12 or 18 each (MotionPrior::state_size()).
 struct IntervalLinearisation {
   struct Coupling {
     int landmark = 0;
-    Matrix3x24 landmark_states;  ///< H(landmark, states)
-    Matrix3 landmark_landmark;   ///< H(landmark, landmark)
-    Vector3 gradient;            ///< g(landmark)
+    Matrix3xPair landmark_states;  ///< H(landmark, states)
+    Matrix3 landmark_landmark;     ///< H(landmark, landmark)
+    Vector3 gradient;              ///< g(landmark)
     ErrorSum error;
   };
-  Matrix24 states;                  ///< H(states, states), symmetric, complete; with the motion prior
-  Vector24 gradient;                ///< g(states)
+  PairMatrix states;                ///< H(states, states), symmetric, complete; with the motion prior
+  PairVector gradient;              ///< g(states)
   std::vector<Coupling> couplings;  ///< one for each landmark observed in the interval, by landmark
   double cost = 0.0;                ///< ½ Σ ρ
 };
@@ -81,6 +82,7 @@ struct IntervalLinearisation {
 struct IntervalInput {
   const PinholeCamera& camera;
   const RobustLoss& loss;
+  const MotionPrior& motion_prior;
   const Vector6& qc;
   double expansion;
   const ControlState& state0;
@@ -96,9 +98,13 @@ void linearise_interval(const IntervalInput& in, IntervalLinearisation& result);
 /// The same for interval k (1 ≤ k) of a graph at its estimate.
 void linearise_interval(const FactorGraph& graph, int k, IntervalLinearisation& result);
 
-/// Adds H and g of the priors on one state, 12 × 12 and 12, linearised at the graph's estimate or at x.
-void add_state_priors(const FactorGraph& graph, int state, Matrix12& H, Vector12& g);
-void add_state_priors(const FactorGraph& graph, int state, const ControlState& x, Matrix12& H, Vector12& g);
+/// H and g of the priors on one state, linearised at the graph's estimate or at x.
+struct StateSystem {
+  StateMatrix H;
+  StateVector g;
+};
+StateSystem state_priors(const FactorGraph& graph, int state);
+StateSystem state_priors(const FactorGraph& graph, int state, const ControlState& x);
 
 /// The scale anchor's whitened residual and its derivative with respect to each of its landmarks, in their order.
 struct AnchorLinearisation {

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/motion/wnoa.hpp"
 #include "core/support/index.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/differences.hpp"
@@ -15,9 +14,12 @@ using evbench::testing::central_differences;
 using evbench::testing::RandomTangents;
 using evbench::testing::relative_error;
 
+constexpr MotionPrior kWnoa, kSinger{15.0};
+
 /// Two states a moderate motion apart and landmarks in front of them, observed at random times with errors.
-FactorGraph random_interval(RandomTangents& random, int i, int landmarks) {
+FactorGraph random_interval(RandomTangents& random, int i, int landmarks, const MotionPrior& prior = kWnoa) {
   FactorGraph graph;
+  graph.motion_prior = prior;
   graph.camera = {200.0, 210.0, 120.0, 90.0};
   graph.qc << 0.1, 0.2, 0.3, 1.0, 2.0, 3.0;
   ControlState a;
@@ -31,6 +33,11 @@ FactorGraph random_interval(RandomTangents& random, int i, int landmarks) {
   b.t = a.t + random.uniform(0.02, 0.2);
   b.T = a.T * se3::exp(step);
   b.velocity << random.uniform(0, 2) * random.direction(), random.uniform(0, 2) * random.direction();
+  if (prior.has_acceleration()) {
+    for (ControlState* state : {&a, &b}) {
+      state->acceleration << random.uniform(0, 9) * random.direction(), random.uniform(0, 9) * random.direction();
+    }
+  }
   graph.add_state(a);
   graph.add_state(b);
   for (int j = 0; j < landmarks; ++j) {
@@ -48,8 +55,9 @@ FactorGraph random_interval(RandomTangents& random, int i, int landmarks) {
 /// All whitened residuals of the interval, and their derivative: H = JᵀJ, g = Jᵀe by the definition.
 template <class Vector>
 Eigen::VectorXd residuals(const FactorGraph& graph, const Vector& states, const Eigen::VectorXd& landmarks) {
-  const GpInterval interval(graph.states[0].retract(states.template head<12>()),
-                            graph.states[1].retract(states.template tail<12>()));
+  const Eigen::Index n = graph.state_size();
+  const GpInterval interval(graph.states[0].retract(states.head(n)), graph.states[1].retract(states.tail(n)),
+                            graph.motion_prior);
   std::vector<double> values;
   for (const auto& group : graph.intervals[1].groups()) {
     const Vector3 point = graph.landmarks[index(group.landmark)].position + landmarks.segment<3>(3 * group.landmark);
@@ -62,38 +70,44 @@ Eigen::VectorXd residuals(const FactorGraph& graph, const Vector& states, const 
   return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-}  // namespace
-
-TEST_CASE("An interval's normal equations equal those of central differences of its residuals") {
+template <int Orders>
+void check_normal_equations(const MotionPrior& motion_prior) {
+  constexpr int kPair = 12 * Orders;
+  using Pair = Eigen::Matrix<double, kPair, 1>;
   RandomTangents random;
-  constexpr int kLandmarks = 2;
-  constexpr int kRows = 2 * 3 * kLandmarks;
+  constexpr int kSeen = 2;
+  constexpr int kRows = 2 * 3 * kSeen;
   for (int i = 0; i < 500; ++i) {
-    const FactorGraph graph = random_interval(random, i, kLandmarks);
-    const auto J_states = central_differences<kRows, 24>([&](const Vector24& d) -> Eigen::Matrix<double, kRows, 1> {
-      return residuals(graph, d, Eigen::VectorXd::Zero(3 * kLandmarks));
+    const FactorGraph graph = random_interval(random, i, kSeen, motion_prior);
+    const auto J_states = central_differences<kRows, kPair>([&](const Pair& d) -> Eigen::Matrix<double, kRows, 1> {
+      return residuals(graph, d, Eigen::VectorXd::Zero(3 * kSeen));
     });
-    const auto J_landmarks =
-        central_differences<kRows, 3 * kLandmarks>([&](const Vector6& d) -> Eigen::Matrix<double, kRows, 1> {
-          return residuals(graph, Vector24(Vector24::Zero()), d);
-        });
-    const Eigen::VectorXd e = residuals(graph, Vector24(Vector24::Zero()), Eigen::VectorXd::Zero(3 * kLandmarks));
-    const GpInterval interval(graph.states[0], graph.states[1]);
+    const auto J_landmarks = central_differences<kRows, 3 * kSeen>(
+        [&](const Vector6& d) -> Eigen::Matrix<double, kRows, 1> { return residuals(graph, Pair(Pair::Zero()), d); });
+    const Eigen::VectorXd e = residuals(graph, Pair(Pair::Zero()), Eigen::VectorXd::Zero(3 * kSeen));
+    const GpInterval interval = graph.interval(1);
     const auto prior = interval.prior_jacobians(interval.derivatives());
-    Eigen::Matrix<double, 12, 24> J_prior;
+    Eigen::Matrix<double, kPair / 2, kPair> J_prior;
     J_prior << prior.J0, prior.J1;
-    const Matrix12 W = wnoa::process_information(interval.dt(), graph.qcs[1]);
+    const Eigen::MatrixXd axis = interval.prior_information_of_axis();
+    Eigen::Matrix<double, kPair / 2, kPair / 2> W = decltype(W)::Zero();
+    for (int r = 0; r < Orders; ++r) {
+      for (int c = 0; c < Orders; ++c) {
+        W.template block<6, 6>(6 * r, 6 * c).diagonal() = axis(r, c) * graph.qcs[1].cwiseInverse();
+      }
+    }
 
     IntervalLinearisation linear;
     linearise_interval(graph, 1, linear);
-    const Matrix24 H = J_states.transpose() * J_states + J_prior.transpose() * W * J_prior;
-    const Vector24 g = J_states.transpose() * e + J_prior.transpose() * W * interval.prior_residual();
+    const Eigen::MatrixXd H = J_states.transpose() * J_states + J_prior.transpose() * W * J_prior;
+    const Pair g = J_states.transpose() * e + J_prior.transpose() * W * interval.prior_residual();
     CHECK(relative_error(linear.states, H) < 1e-6);
     CHECK(relative_error(linear.gradient, g) < 1e-6);
-    CHECK(linear.cost == Approx(evaluate(graph).total()));
-    REQUIRE(linear.couplings.size() == kLandmarks);
+    const Vector6 acceleration = initial_acceleration_residual(graph);
+    CHECK(linear.cost + 0.5 * acceleration.squaredNorm() == Approx(evaluate(graph).total()));
+    REQUIRE(linear.couplings.size() == kSeen);
     for (const auto& coupling : linear.couplings) {
-      const Eigen::Matrix<double, kRows, 3> J = J_landmarks.middleCols<3>(3 * coupling.landmark);
+      const Eigen::Matrix<double, kRows, 3> J = J_landmarks.template middleCols<3>(3 * coupling.landmark);
       CHECK(relative_error(coupling.landmark_landmark, J.transpose() * J) < 1e-6);
       CHECK(relative_error(coupling.landmark_states, J.transpose() * J_states) < 1e-6);
       CHECK(relative_error(coupling.gradient, J.transpose() * e) < 1e-6);
@@ -105,13 +119,20 @@ TEST_CASE("An interval's normal equations equal those of central differences of 
   }
 }
 
+}  // namespace
+
+TEST_CASE("An interval's normal equations equal those of central differences of its residuals") {
+  check_normal_equations<2>(kWnoa);
+  check_normal_equations<3>(kSinger);
+}
+
 TEST_CASE("An interval's cost and reprojection errors are the sums over its observations, for any rotation") {
   RandomTangents random;
   for (int i = 0; i < 200; ++i) {
-    FactorGraph graph = random_interval(random, i, 1 + i % 9);
+    FactorGraph graph = random_interval(random, i, 1 + i % 9, i % 4 < 2 ? kWnoa : kSinger);
     graph.loss = RobustLoss(static_cast<RobustLoss::Kind>(i % 3), 2.0);
     if (i % 2 == 0) graph.states[1].T = graph.states[0].T * se3::exp(random.tangent(i));
-    const GpInterval interval(graph.states[0], graph.states[1]);
+    const GpInterval interval = graph.interval(1);
     const std::vector<ErrorSum> errors = reprojection_errors(graph, 1);
     const auto& groups = graph.intervals[1].groups();
     REQUIRE(errors.size() == groups.size());
@@ -136,23 +157,22 @@ TEST_CASE("An interval's cost and reprojection errors are the sums over its obse
 TEST_CASE("Gradients of robust losses and of state priors match the cost") {
   RandomTangents random;
   for (int i = 0; i < 100; ++i) {
-    FactorGraph graph = random_interval(random, i, 3);
+    FactorGraph graph = random_interval(random, i, 3, kSinger);
     graph.loss = RobustLoss(i % 2 == 0 ? RobustLoss::Kind::huber : RobustLoss::Kind::cauchy, 1.5);
     const SE3 near = graph.states[1].T * se3::exp(Vector6::Constant(0.1));
     graph.pose_priors.push_back({1, near, Vector6::LinSpaced(0.1, 0.6)});
     graph.velocity_priors.push_back({1, Vector6::Constant(0.3), Vector6::LinSpaced(0.1, 0.6)});
     IntervalLinearisation linear;
     linearise_interval(graph, 1, linear);
-    Matrix12 H = Matrix12::Zero();
-    Vector12 g = Vector12::Zero();
-    add_state_priors(graph, 1, H, g);
-    Vector24 gradient = linear.gradient;
-    gradient.tail<12>() += g;
-    const auto slope = central_differences<1, 24>(
-        [&](const Vector24& d) -> Eigen::Matrix<double, 1, 1> {
+    using Vector36 = Eigen::Matrix<double, 36, 1>;
+    Vector36 gradient = linear.gradient;
+    gradient.head<18>() += state_priors(graph, 0).g;
+    gradient.tail<18>() += state_priors(graph, 1).g;
+    const auto slope = central_differences<1, 36>(
+        [&](const Vector36& d) -> Eigen::Matrix<double, 1, 1> {
           FactorGraph moved = graph;
-          moved.states[0] = graph.states[0].retract(d.head<12>());
-          moved.states[1] = graph.states[1].retract(d.tail<12>());
+          moved.states[0] = graph.states[0].retract(d.head<18>());
+          moved.states[1] = graph.states[1].retract(d.tail<18>());
           return Eigen::Matrix<double, 1, 1>(evaluate(moved).total());
         },
         1e-4);

@@ -7,7 +7,9 @@
 namespace evbench::smoother {
 
 GraphLayout::GraphLayout(const FactorGraph& graph)
-    : state_offset(graph.states.size(), -1), landmark_offset(graph.landmarks.size(), -1) {
+    : state_size(graph.state_size()),
+      state_offset(graph.states.size(), -1),
+      landmark_offset(graph.landmarks.size(), -1) {
   // Landmarks come first: they are eliminated first.
   for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
     if (graph.landmarks[j].intervals.empty()) continue;
@@ -16,25 +18,24 @@ GraphLayout::GraphLayout(const FactorGraph& graph)
   }
   for (int& offset : state_offset) {
     offset = size;
-    size += kStateSize;
+    size += state_size;
   }
 }
 
 namespace {
 
 void add_interval(const GraphLayout& layout, int k, const IntervalLinearisation& linear, NormalEquations& equations) {
-  const int x0 = layout.state_offset[index(k - 1)], x1 = layout.state_offset[index(k)];
-  equations.add_block(x0, x0, Matrix12(linear.states.topLeftCorner<12, 12>()));
-  equations.add_block(x1, x0, Matrix12(linear.states.bottomLeftCorner<12, 12>()));
-  equations.add_block(x1, x1, Matrix12(linear.states.bottomRightCorner<12, 12>()));
-  equations.add_gradient(x0, linear.gradient.head<12>());
-  equations.add_gradient(x1, linear.gradient.tail<12>());
+  const int x0 = layout.state_offset[index(k - 1)], x1 = layout.state_offset[index(k)], n = layout.state_size;
+  equations.add_block(x0, x0, linear.states.topLeftCorner(n, n));
+  equations.add_block(x1, x0, linear.states.bottomLeftCorner(n, n));
+  equations.add_block(x1, x1, linear.states.bottomRightCorner(n, n));
+  equations.add_gradient(x0, linear.gradient.head(n));
+  equations.add_gradient(x1, linear.gradient.tail(n));
   for (const auto& coupling : linear.couplings) {
     const int l = layout.landmark_offset[index(coupling.landmark)];
-    using Matrix3x12 = Eigen::Matrix<double, 3, 12>;
     equations.add_block(l, l, coupling.landmark_landmark);
-    equations.add_block(l, x0, Matrix3x12(coupling.landmark_states.leftCols<12>()));
-    equations.add_block(l, x1, Matrix3x12(coupling.landmark_states.rightCols<12>()));
+    equations.add_block(l, x0, coupling.landmark_states.leftCols(n));
+    equations.add_block(l, x1, coupling.landmark_states.rightCols(n));
     equations.add_gradient(l, coupling.gradient);
   }
 }
@@ -54,11 +55,9 @@ void add_anchor(const FactorGraph& graph, const GraphLayout& layout, NormalEquat
 
 void add_priors(const FactorGraph& graph, const GraphLayout& layout, NormalEquations& equations) {
   for (std::size_t i = 0; i < graph.states.size(); ++i) {
-    Matrix12 H = Matrix12::Zero();
-    Vector12 g = Vector12::Zero();
-    add_state_priors(graph, static_cast<int>(i), H, g);
-    equations.add_block(layout.state_offset[i], layout.state_offset[i], H);
-    equations.add_gradient(layout.state_offset[i], g);
+    const StateSystem system = state_priors(graph, static_cast<int>(i));
+    equations.add_block(layout.state_offset[i], layout.state_offset[i], system.H);
+    equations.add_gradient(layout.state_offset[i], system.g);
   }
   for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
     const LandmarkPrior& prior = graph.landmarks[j].prior;
@@ -84,7 +83,7 @@ void add_factors(const FactorGraph& graph, const GraphLayout& layout, NormalEqua
 
 void apply_step(FactorGraph& graph, const GraphLayout& layout, const Eigen::VectorXd& step) {
   for (std::size_t i = 0; i < graph.states.size(); ++i) {
-    graph.states[i] = graph.states[i].retract(step.segment<GraphLayout::kStateSize>(layout.state_offset[i]));
+    graph.states[i] = graph.states[i].retract(step.segment(layout.state_offset[i], layout.state_size));
   }
   for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
     if (layout.landmark_offset[j] >= 0) {

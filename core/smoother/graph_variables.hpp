@@ -8,8 +8,9 @@ namespace evbench::smoother {
 
 /// Offsets of a graph's variables in the vector of all; −1: landmarks without observations.
 struct GraphLayout {
-  static constexpr int kStateSize = 12, kLandmarkSize = 3;
+  static constexpr int kLandmarkSize = 3;
 
+  int state_size = 0;
   int size = 0;
   std::vector<int> state_offset, landmark_offset;
 

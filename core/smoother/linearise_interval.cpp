@@ -12,16 +12,14 @@
 // together, the i-th observation of each at once (weight 0 if one has fewer). Terms that a landmark's observations
 // share stay in lanes of registers until they are complete, and only the result is transposed.
 //
-// With m = T_0⁻¹ l and ξ = a ϖ_0 + b ξ_1 + c w_1 a residual is a function of (m, ξ) alone, e = whitened π(Exp(−ξ) m) −
-// z. With G = ∂e/∂ξ the block of each pair of (ϖ_0, ξ_1, w_1) is a multiple of GᵀG, and the first pose acts through m
-// alone: δm = R_0ᵀ δl + [m^, −I] δT_0. Only once an interval these local coordinates (δT_0, δϖ_0, δξ_1, δw_1) are
-// mapped to the increments of both states.
+// With m = T_0⁻¹ l and ξ = a ϖ_0 + b ξ_1 + c w_1 (with Singer's prior + d ϖ_0' + e c_1) a residual is a function of
+// (m, ξ) alone, e = whitened π(Exp(−ξ) m) − z. With G = ∂e/∂ξ the block of each pair of y = (ϖ_0, ξ_1, w_1, ...) is a
+// multiple of GᵀG, and the first pose acts through m alone: δm = R_0ᵀ δl + [m^, −I] δT_0. Only once an interval these
+// local coordinates (δT_0, δy) are mapped to the increments of both states.
 namespace evbench::smoother {
 namespace {
 
 using namespace lanes;  // NOLINT: this file and that header are one algorithm
-
-using Matrix12x24 = Eigen::Matrix<double, 12, 24>;
 
 /// rows × [m^, −I]: turns a derivative with respect to m into one with respect to δT_0.
 template <std::size_t N>
@@ -34,14 +32,12 @@ std::array<std::array<Lane, 6>, N> through_first_pose(const std::array<std::arra
   return result;
 }
 
-/// ∂(ξ_1, w_1)/∂(increments of both states), by its blocks that are not zero.
-struct EndMap {
-  Matrix6 xi1_T0, xi1_T1, w1_T0, w1_T1, w1_v1;
-};
-
 /// The coupling of each lane's landmark in world coordinates and to the increments of both states.
-void write_couplings(const LandmarkSums& landmark, const std::array<std::array<Lane, 6>, 3>& mT, const Matrix3& R0,
-                     const EndMap& map, const std::array<IntervalLinearisation::Coupling*, kLanes>& couplings) {
+template <int Orders>
+void write_couplings(const LandmarkSums<Orders>& landmark, const std::array<std::array<Lane, 6>, 3>& mT,
+                     const Matrix3& R0, const GpInterval::Derivatives& map,
+                     const std::array<IntervalLinearisation::Coupling*, kLanes>& couplings) {
+  constexpr Eigen::Index kState = 6 * Orders;
   const auto rotate = [&](const std::array<Lane, 3>& v, std::size_t r) {
     const auto i = static_cast<Eigen::Index>(r);
     return R0(i, 0) * v[0] + R0(i, 1) * v[1] + R0(i, 2) * v[2];
@@ -66,15 +62,19 @@ void write_couplings(const LandmarkSums& landmark, const std::array<std::array<L
       const auto column = static_cast<Eigen::Index>(c);
       scatter(rotate(Rmm[r], c), [&](auto& to) -> double& { return to.landmark_landmark(row, column); });
     }
-    std::array<Lane, 12> end;
+    const auto turned = [&](std::size_t i) {
+      return rotate({landmark.my[0][i], landmark.my[1][i], landmark.my[2][i]}, r);
+    };
+    std::array<Lane, 6 * Orders> end;  // (ξ_1, w_1, c_1)
     for (std::size_t i = 0; i < 6; ++i) {
       const auto column = static_cast<Eigen::Index>(i);
-      scatter(rotate({landmark.my[0][i], landmark.my[1][i], landmark.my[2][i]}, r),
-              [&](auto& c) -> double& { return c.landmark_states(row, 6 + column); });
+      scatter(turned(i), [&](auto& c) -> double& { return c.landmark_states(row, 6 + column); });
+      if constexpr (Orders == 3) {
+        scatter(turned(18 + i), [&](auto& c) -> double& { return c.landmark_states(row, 12 + column); });
+        end[12 + i] = turned(24 + i);
+      }
     }
-    for (std::size_t i = 0; i < 12; ++i) {
-      end[i] = rotate({landmark.my[0][6 + i], landmark.my[1][6 + i], landmark.my[2][6 + i]}, r);
-    }
+    for (std::size_t i = 0; i < 12; ++i) end[i] = turned(6 + i);
     for (std::size_t i = 0; i < 6; ++i) {
       const auto column = static_cast<Eigen::Index>(i);
       Lane T0 = rotate({mT[0][i], mT[1][i], mT[2][i]}, r);
@@ -84,17 +84,29 @@ void write_couplings(const LandmarkSums& landmark, const std::array<std::array<L
         T0 += end[k] * map.xi1_T0(at, column) + end[6 + k] * map.w1_T0(at, column);
         T1 += end[k] * map.xi1_T1(at, column) + end[6 + k] * map.w1_T1(at, column);
         v1 += end[6 + k] * map.w1_v1(at, column);
+        if constexpr (Orders == 3) {
+          T0 += end[12 + k] * map.c1_T0(at, column);
+          T1 += end[12 + k] * map.c1_T1(at, column);
+          v1 += end[12 + k] * map.c1_v1(at, column);
+        }
       }
       scatter(T0, [&](auto& c) -> double& { return c.landmark_states(row, column); });
-      scatter(T1, [&](auto& c) -> double& { return c.landmark_states(row, 12 + column); });
-      scatter(v1, [&](auto& c) -> double& { return c.landmark_states(row, 18 + column); });
+      scatter(T1, [&](auto& c) -> double& { return c.landmark_states(row, kState + column); });
+      scatter(v1, [&](auto& c) -> double& { return c.landmark_states(row, kState + 6 + column); });
+      if constexpr (Orders == 3) {
+        Lane a1{};
+        for (std::size_t k = 0; k < 6; ++k) a1 += end[12 + k] * map.c1_a1(static_cast<Eigen::Index>(k), column);
+        scatter(a1, [&](auto& c) -> double& { return c.landmark_states(row, kState + 12 + column); });
+      }
     }
   }
 }
 
 /// Adds the first pose's part to the interval's sums, computed from the landmark's.
-void add_first_pose(const LandmarkSums& landmark, const std::array<std::array<Lane, 6>, 3>& mT, const Lane3& m,
-                    IntervalSums& sums) {
+template <int Orders>
+void add_first_pose(const LandmarkSums<Orders>& landmark, const std::array<std::array<Lane, 6>, 3>& mT, const Lane3& m,
+                    IntervalSums<Orders>& sums) {
+  constexpr std::size_t kRows = IntervalSums<Orders>::kRows;
   std::array<std::array<Lane, 3>, 6> Tm;
   for (std::size_t i = 0; i < 6; ++i) Tm[i] = {mT[0][i], mT[1][i], mT[2][i]};
   const auto TT = through_first_pose(Tm, m);
@@ -102,19 +114,20 @@ void add_first_pose(const LandmarkSums& landmark, const std::array<std::array<La
   for (std::size_t i = 0; i < 6; ++i) {
     for (std::size_t j = 0; j <= i; ++j, ++n) sums.TT[n] += TT[i][j];
   }
-  std::array<std::array<Lane, 3>, 18> ym;
-  for (std::size_t i = 0; i < 18; ++i) ym[i] = {landmark.my[0][i], landmark.my[1][i], landmark.my[2][i]};
+  std::array<std::array<Lane, 3>, kRows> ym;
+  for (std::size_t i = 0; i < kRows; ++i) ym[i] = {landmark.my[0][i], landmark.my[1][i], landmark.my[2][i]};
   const auto yT = through_first_pose(ym, m);
-  for (std::size_t i = 0; i < 18; ++i) {
+  for (std::size_t i = 0; i < kRows; ++i) {
     for (std::size_t j = 0; j < 6; ++j) sums.yT[i][j] += yT[i][j];
   }
   const auto g = through_first_pose(std::array<std::array<Lane, 3>, 1>{landmark.gradient}, m);
   for (std::size_t j = 0; j < 6; ++j) sums.gradient_T[j] += g[0][j];
 }
 
-template <Range range>
-void add_landmarks(const Shared& shared, const IntervalInput& in, const Matrix3& R0, const EndMap& map,
-                   std::span<const int> order, IntervalSums& sums, IntervalLinearisation& result) {
+template <int Orders, Range range>
+void add_landmarks(const Shared<Orders>& shared, const IntervalInput& in, const Matrix3& R0,
+                   const GpInterval::Derivatives& map, std::span<const int> order, IntervalSums<Orders>& sums,
+                   IntervalLinearisation& result) {
   const auto& groups = in.observations.groups();
   const Observation* all = in.observations.all().data();
   for (std::size_t first = 0; first < order.size(); first += kLanes) {
@@ -128,6 +141,7 @@ void add_landmarks(const Shared& shared, const IntervalInput& in, const Matrix3&
       const auto& group = groups[g];
       couplings[i] = &result.couplings[g];
       couplings[i]->landmark = group.landmark;
+      couplings[i]->landmark_states.resize(3, 12 * Orders);
       next[i] = all + group.begin;
       count[i] = group.end - group.begin;
       const Vector3 local = R0.transpose() * (in.positions[g] - in.state0.T.p);
@@ -135,13 +149,13 @@ void add_landmarks(const Shared& shared, const IntervalInput& in, const Matrix3&
       m.y[i] = local.y();
       m.z[i] = local.z();
     }
-    LandmarkSums landmark;
+    LandmarkSums<Orders> landmark;
     for (int n = 0; n < count[0]; ++n) {  // lane 0 has the most
       Measured z(shared.interval.t0);
       for (std::size_t i = 0; i < kLanes; ++i) {
         if (n < count[i]) z.set(i, *next[i]++);
       }
-      add_observation<range>(shared, m, z, landmark, sums);
+      add_observation<range, Orders>(shared, m, z, landmark, sums);
     }
     const auto& h = landmark.mm;
     const auto mT = through_first_pose(
@@ -157,19 +171,25 @@ void add_landmarks(const Shared& shared, const IntervalInput& in, const Matrix3&
   }
 }
 
-/// Normal equations in the local coordinates (δT_0, δϖ_0, δξ_1, δw_1).
+/// Normal equations in the local coordinates (δT_0, δy).
+template <int Orders>
 struct LocalSystem {
-  Matrix24 H;
-  Vector24 g;
+  static constexpr int kSize = 12 * Orders, kEnd = 6 * Orders;
+  using Information = Eigen::Matrix<double, kEnd, kEnd>;
+  using Residual = Eigen::Matrix<double, kEnd, 1>;
 
-  explicit LocalSystem(const IntervalSums& sums) {
+  Eigen::Matrix<double, kSize, kSize> H;
+  Eigen::Matrix<double, kSize, 1> g;
+
+  explicit LocalSystem(const IntervalSums<Orders>& sums) {
+    constexpr Eigen::Index kTerms = IntervalSums<Orders>::kTerms;
     std::size_t n = 0;
     for (Eigen::Index i = 0; i < 6; ++i) {
       g(i) = sum(sums.gradient_T[index(i)]);
       for (Eigen::Index j = 0; j <= i; ++j, ++n) {
         H(i, j) = H(j, i) = sum(sums.TT[n]);
         std::size_t pair = 0;
-        for (Eigen::Index p = 0; p < 3; ++p) {
+        for (Eigen::Index p = 0; p < kTerms; ++p) {
           for (Eigen::Index q = 0; q <= p; ++q, ++pair) {
             const double value = sum(sums.yy[pair][n]);
             const Eigen::Index r = 6 + 6 * p, c = 6 + 6 * q;
@@ -178,48 +198,109 @@ struct LocalSystem {
         }
       }
     }
-    for (Eigen::Index i = 0; i < 18; ++i) {
+    for (Eigen::Index i = 0; i < 6 * kTerms; ++i) {
       const auto at = static_cast<std::size_t>(i);
       g(6 + i) = sum(sums.gradient_y[at]);
       for (Eigen::Index j = 0; j < 6; ++j) H(6 + i, j) = H(j, 6 + i) = sum(sums.yT[at][index(j)]);
     }
   }
 
-  /// The residual (ξ_1 − Δt ϖ_0 ; w_1 − ϖ_0) is linear in the local coordinates. Returns its cost.
+  /// The residual is linear in the local coordinates, J = [0, F, I, ...]: (ξ_1 − Δt ϖ_0 ; w_1 − ϖ_0) for WNOA, with
+  /// Singer's prior less Φ's last column times ϖ_0', and (...; c_1 − Φ ϖ_0'). Returns its cost.
   double add_motion_prior(const GpInterval& interval, const Vector6& qc) {
-    const Matrix12 W = wnoa::process_information(interval.dt(), qc);
-    const Vector12 e = interval.prior_residual();
-    const Vector12 We = W * e;
-    // J = [0, −(Δt; 1), I]
-    Eigen::Matrix<double, 12, 6> WF = -interval.dt() * W.leftCols<6>() - W.rightCols<6>();
-    const Matrix6 FWF = -interval.dt() * WF.topRows<6>() - WF.bottomRows<6>();
-    H.block<6, 6>(6, 6) += FWF;
-    H.block<12, 6>(12, 6) += WF;
-    H.block<6, 12>(6, 12) += WF.transpose();
-    H.block<12, 12>(12, 12) += W;
-    g.segment<6>(6) -= interval.dt() * We.head<6>() + We.tail<6>();
-    g.tail<12>() += We;
+    const Information W = information(interval, qc);
+    const Residual e = interval.prior_residual();
+    const Residual We = W * e;
+    const double dt = interval.dt();
+    const Eigen::Matrix<double, kEnd, 6> WF = -dt * W.template leftCols<6>() - W.template middleCols<6>(6);
+    const Matrix6 FWF = -dt * WF.template topRows<6>() - WF.template middleRows<6>(6);
+    H.template block<6, 6>(6, 6) += FWF;
+    H.template block<12, 6>(12, 6) += WF.template topRows<12>();
+    H.template block<6, 12>(6, 12) += WF.template topRows<12>().transpose();
+    H.template block<12, 12>(12, 12) += W.template topLeftCorner<12, 12>();
+    g.template segment<6>(6) -= dt * We.template head<6>() + We.template segment<6>(6);
+    g.template segment<12>(12) += We.template head<12>();
+    if constexpr (Orders == 3) add_acceleration(interval, W, WF, We);
     return 0.5 * e.dot(We);
+  }
+
+ private:
+  static Information information(const GpInterval& interval, const Vector6& qc) {
+    if constexpr (Orders == 2) return wnoa::process_information(interval.dt(), qc);
+    const Eigen::MatrixXd axis = interval.prior_information_of_axis();
+    Information W = Information::Zero();
+    for (int r = 0; r < Orders; ++r) {
+      for (int c = 0; c < Orders; ++c) W.template block<6, 6>(6 * r, 6 * c).diagonal() = axis(r, c) * qc.cwiseInverse();
+    }
+    return W;
+  }
+
+  /// The rows of ϖ_0' and c_1, from 24 and 30 on.
+  void add_acceleration(const GpInterval& interval, const Information& W, const Eigen::Matrix<double, kEnd, 6>& WF,
+                        const Residual& We) {
+    const Vector3 decay = singer::transition(interval.dt(), interval.singer_rate()).col(2);
+    const auto weighted = [&](const auto& rows) {
+      return (-decay[0] * rows.template topRows<6>() - decay[1] * rows.template middleRows<6>(6) -
+              decay[2] * rows.template bottomRows<6>())
+          .eval();
+    };
+    const Eigen::Matrix<double, 6, kEnd> AW = weighted(W);
+    const auto add = [this](Eigen::Index r, Eigen::Index c, const Matrix6& block) {
+      H.template block<6, 6>(r, c) += block;
+      if (r != c) H.template block<6, 6>(c, r) += block.transpose();
+    };
+    add(24, 6, weighted(WF));
+    add(24, 12, AW.template leftCols<6>());
+    add(24, 18, AW.template middleCols<6>(6));
+    add(24, 24, weighted(AW.transpose().eval()));
+    add(30, 6, WF.template bottomRows<6>());
+    add(30, 12, W.template block<6, 6>(12, 0));
+    add(30, 18, W.template block<6, 6>(12, 6));
+    add(30, 24, AW.template rightCols<6>().transpose());
+    add(30, 30, W.template block<6, 6>(12, 12));
+    g.template segment<6>(24) += weighted(We);
+    g.template segment<6>(30) += We.template tail<6>();
   }
 };
 
-/// From the local coordinates to the increments of both states: the first 12 stay, (ξ_1, w_1) are mapped.
-void map_to_states(const LocalSystem& local, const EndMap& blocks, IntervalLinearisation& result) {
+/// From the local coordinates to the increments of both states: δT_0, δϖ_0 (and δϖ_0') stay, those of the end are
+/// mapped.
+void map_to_states(const LocalSystem<2>& local, const GpInterval::Derivatives& d, IntervalLinearisation& result) {
+  using Matrix12x24 = Eigen::Matrix<double, 12, 24>;
   Matrix12x24 map = Matrix12x24::Zero();
-  map.block<6, 6>(0, 0) = blocks.xi1_T0;
-  map.block<6, 6>(0, 12) = blocks.xi1_T1;
-  map.block<6, 6>(6, 0) = blocks.w1_T0;
-  map.block<6, 6>(6, 12) = blocks.w1_T1;
-  map.block<6, 6>(6, 18) = blocks.w1_v1;
+  map.block<6, 6>(0, 0) = d.xi1_T0;
+  map.block<6, 6>(0, 12) = d.xi1_T1;
+  map.block<6, 6>(6, 0) = d.w1_T0;
+  map.block<6, 6>(6, 12) = d.w1_T1;
+  map.block<6, 6>(6, 18) = d.w1_v1;
   Matrix12x24 half;
   half.noalias() = 0.5 * local.H.bottomRightCorner<12, 12>() * map;
   half.leftCols<12>() += local.H.bottomLeftCorner<12, 12>();
-  Matrix24 mixed;
+  Eigen::Matrix<double, 24, 24> mixed;
   mixed.noalias() = map.transpose() * half;
   result.states = mixed + mixed.transpose();
   result.states.topLeftCorner<12, 12>() += local.H.topLeftCorner<12, 12>();
   result.gradient.noalias() = map.transpose() * local.g.tail<12>();
   result.gradient.head<12>() += local.g.head<12>();
+}
+
+void map_to_states(const LocalSystem<3>& local, const GpInterval::Derivatives& d, IntervalLinearisation& result) {
+  using Matrix36 = Eigen::Matrix<double, 36, 36>;
+  Matrix36 map = Matrix36::Zero();
+  map.block<12, 12>(0, 0).setIdentity();
+  map.block<6, 6>(12, 0) = d.xi1_T0;
+  map.block<6, 6>(12, 18) = d.xi1_T1;
+  map.block<6, 6>(18, 0) = d.w1_T0;
+  map.block<6, 6>(18, 18) = d.w1_T1;
+  map.block<6, 6>(18, 24) = d.w1_v1;
+  map.block<6, 6>(24, 12).setIdentity();
+  map.block<6, 6>(30, 0) = d.c1_T0;
+  map.block<6, 6>(30, 18) = d.c1_T1;
+  map.block<6, 6>(30, 24) = d.c1_v1;
+  map.block<6, 6>(30, 30) = d.c1_a1;
+  const Matrix36 mixed = map.transpose() * (0.5 * local.H * map).eval();
+  result.states = mixed + mixed.transpose();
+  result.gradient.noalias() = map.transpose() * local.g;
 }
 
 /// Adds the gradient of the expansion −c log s = c log Σ 1/d_j. Its curvature is negligible against the observations'.
@@ -240,10 +321,9 @@ void add_expansion(const IntervalInput& in, IntervalLinearisation& result) {
 }  // namespace
 
 void linearise_interval(const IntervalInput& in, IntervalLinearisation& result) {
-  const GpInterval interval(in.state0, in.state1);
+  const GpInterval interval(in.state0, in.state1, in.motion_prior);
   const Matrix3 R0 = interval.T0().R();
-  const GpInterval::Derivatives d = interval.derivatives();
-  const EndMap map{d.xi1_T0, d.xi1_T1, d.w1_T0, d.w1_T1, d.w1_v1};
+  const GpInterval::Derivatives derivatives = interval.derivatives();
   const auto& groups = in.observations.groups();
   result.couplings.resize(groups.size());
   thread_local std::vector<int> order;  // landmarks with the most observations first
@@ -254,12 +334,14 @@ void linearise_interval(const IntervalInput& in, IntervalLinearisation& result) 
     const auto& gb = groups[index(b)];
     return ga.end - ga.begin > gb.end - gb.begin;
   });
-  const Shared shared{in.loss, in.camera, Interval(interval)};
-  IntervalSums sums;
-  with_range_of(interval, [&]<Range range>() { add_landmarks<range>(shared, in, R0, map, order, sums, result); });
-  LocalSystem local(sums);
-  result.cost = sum(sums.cost) + local.add_motion_prior(interval, in.qc);
-  map_to_states(local, map, result);
+  with_kind_of(interval, [&]<int orders, Range range>() {
+    const Shared<orders> shared{in.loss, in.camera, Interval<orders>(interval)};
+    IntervalSums<orders> sums;
+    add_landmarks<orders, range>(shared, in, R0, derivatives, order, sums, result);
+    LocalSystem<orders> local(sums);
+    result.cost = sum(sums.cost) + local.add_motion_prior(interval, in.qc);
+    map_to_states(local, derivatives, result);
+  });
   add_expansion(in, result);
 }
 
@@ -270,7 +352,7 @@ void linearise_interval(const FactorGraph& graph, int k, IntervalLinearisation& 
   for (const auto& group : observations.groups()) {
     positions.push_back(graph.landmarks[index(group.landmark)].position);
   }
-  linearise_interval({graph.camera, graph.loss, graph.qcs[index(k)], graph.expansions[index(k)],
+  linearise_interval({graph.camera, graph.loss, graph.motion_prior, graph.qcs[index(k)], graph.expansions[index(k)],
                       graph.states[index(k - 1)], graph.states[index(k)], observations, positions},
                      result);
 }

@@ -11,17 +11,17 @@ using namespace lanes;  // NOLINT: this file works by lanes
 /// Calls visit(residual, observed, index of the group of each lane's observation).
 template <class Visit>
 void for_each_residual(const FactorGraph& graph, int k, const GpInterval& interval, Visit visit) {
-  const Interval shared(interval);
   const IntervalObservations& observations = graph.intervals[index(k)];
   const auto& groups = observations.groups();
   const Matrix3 R = interval.T0().R().transpose();
-  with_range_of(interval, [&]<Range range>() {
+  with_kind_of(interval, [&]<int orders, Range range>() {
+    const Interval<orders> shared(interval);
     std::array<std::size_t, kLanes> places{};
     Lane3 m;
     Measured observed(shared.t0);
     std::size_t lane = 0;
     const auto finish = [&] {
-      const Motion moved = motion(tangent<range>(shared, hermite_basis(shared, observed.t)));
+      const Motion moved = motion(tangent<range, orders>(shared, basis_at(shared, observed.t)));
       visit(residual_of(graph.camera, moved.into_camera(m), observed), observed, places);
       observed = Measured(shared.t0);
       lane = 0;
@@ -53,7 +53,7 @@ double measurement_cost(const FactorGraph& graph, int k, const GpInterval& inter
 
 std::vector<ErrorSum> reprojection_errors(const FactorGraph& graph, int k) {
   std::vector<ErrorSum> sums(graph.intervals[index(k)].groups().size());
-  const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
+  const GpInterval interval = graph.interval(k);
   for_each_residual(graph, k, interval, [&](const Residual& r, const Measured& observed, const auto& places) {
     const Lane error = r.px();
     for (std::size_t i = 0; i < kLanes; ++i) {

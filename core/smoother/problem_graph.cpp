@@ -6,10 +6,11 @@
 
 namespace evbench::smoother {
 
-FactorGraph to_graph(const Problem& problem) {
+FactorGraph to_graph(const Problem& problem, const MotionPrior& motion_prior) {
   const Problem usable = prepare(problem);
   FactorGraph graph;
   graph.camera = usable.camera;
+  graph.motion_prior = motion_prior;
   graph.qc = usable.qc;
   for (const ControlState& state : usable.states) graph.add_state(state);
   for (const Vector3& position : usable.landmarks) graph.add_landmark(position);

@@ -7,7 +7,7 @@ namespace evbench::smoother {
 
 /// The solver's form of a problem, after prepare(): landmark and state indices stay; landmarks without usable
 /// observations have none and are not alive.
-FactorGraph to_graph(const Problem& problem);
+FactorGraph to_graph(const Problem& problem, const MotionPrior& motion_prior = {});
 
 /// The problem file's form of the result of a run: present estimates become the initial guess. Removed landmarks are
 /// left out, and the others are renumbered. The format has no robust loss and no scale anchor: the loss is dropped, and

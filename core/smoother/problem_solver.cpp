@@ -16,7 +16,8 @@ class IncrementalRun {
  public:
   IncrementalRun(const Problem& problem, const SolveOptions& options)
       : problem_(problem),
-        engine_(problem.camera, problem.qc, RobustLoss(), engine_options(options)),
+        motion_prior_(options.motion_prior),
+        engine_(problem.camera, problem.qc, RobustLoss(), engine_options(options), options.motion_prior),
         number_(problem.landmarks.size(), -1),
         held_back_(problem.landmarks.size(), -1),
         priors_(problem.landmarks.size()) {
@@ -52,7 +53,7 @@ class IncrementalRun {
 
   /// All factors with the final estimate: with a lag the engine has dropped most of them.
   FactorGraph complete_graph() const {
-    FactorGraph graph = to_graph(problem_);
+    FactorGraph graph = to_graph(problem_, motion_prior_);
     graph.states = engine_.graph().states;
     for (std::size_t j = 0; j < number_.size(); ++j) {
       if (number_[j] < 0) continue;
@@ -62,13 +63,8 @@ class IncrementalRun {
   }
 
   void add_step(std::size_t k) {
-    ControlState state = problem_.states[k];
-    if (k > 0) {
-      const ControlState& newest = engine_.graph().states.back();
-      state.T = newest.T * se3::exp((state.t - newest.t) * newest.velocity);
-      state.velocity = newest.velocity;
-    }
-    engine_.add_state(state);
+    const ControlState& state = problem_.states[k];
+    k == 0 ? engine_.add_state(state) : engine_.add_state_at(state.t);
     for (const auto& prior : problem_.pose_priors) {
       if (prior.state == static_cast<int>(k)) engine_.add_pose_prior({prior.state, prior.T, prior.sigma});
     }
@@ -99,6 +95,7 @@ class IncrementalRun {
   }
 
   const Problem& problem_;
+  MotionPrior motion_prior_;
   Smoother engine_;
   std::vector<int> number_;              ///< of a problem's landmark in the engine, −1: not in yet
   std::vector<std::int64_t> held_back_;  ///< the only observation of a landmark so far
@@ -108,7 +105,7 @@ class IncrementalRun {
 
 SolveResult solve_at_once(const Problem& problem, const SolveOptions& options) {
   SolveResult result;
-  Smoother engine(to_graph(problem), options.engine);
+  Smoother engine(to_graph(problem, options.motion_prior), options.engine);
   const auto start = std::chrono::steady_clock::now();
   const auto summary = engine.optimise(options.max_iterations, 1e-8);
   result.step_ms.push_back(1e3 * seconds_since(start));

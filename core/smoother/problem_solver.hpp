@@ -15,8 +15,9 @@ enum class SolveMode { incremental, batch, fixed_lag };
 struct SolveOptions {
   SolveMode mode = SolveMode::incremental;
   SmootherOptions engine;
-  double lag = 2.0;         ///< [s], fixed-lag mode
-  int max_iterations = 20;  ///< batch mode
+  MotionPrior motion_prior;  ///< the file has its QC alone
+  double lag = 2.0;          ///< [s], fixed-lag mode
+  int max_iterations = 20;   ///< batch mode
 };
 
 struct SolveResult {
@@ -29,10 +30,10 @@ struct SolveResult {
 };
 
 /// Solves a problem by the protocol of problem files: step 0 adds state 0 and its priors; step k ≥ 1 adds state k,
-/// started at T_{k−1} Exp(Δt ϖ_{k−1}) from the newest estimate, and every observation of (t_{k−1}, t_k]. A landmark
-/// enters with its second observation, its prior and the observations held back until then. A step's time is that of
-/// adding its data, updating, and reading the newest state. In batch mode a step is one solve from the initial guess of
-/// the file.
+/// started at the motion expected from the newest estimate, T_{k−1} Exp(Δt ϖ_{k−1}) for WNOA, and every observation of
+/// (t_{k−1}, t_k]. A landmark enters with its second observation, its prior and the observations held back until then.
+/// A step's time is that of adding its data, updating, and reading the newest state. In batch mode a step is one solve
+/// from the initial guess of the file.
 SolveResult solve_problem(const Problem& problem, const SolveOptions& options);
 
 /// (cost of the estimate − cost after a batch solve from there) / the latter; with the oracle's estimate for

@@ -6,9 +6,23 @@
 
 namespace evbench::smoother {
 
+namespace {
+
+FactorGraph empty_graph(const PinholeCamera& camera, const Vector6& qc, const RobustLoss& loss,
+                        const MotionPrior& motion_prior) {
+  FactorGraph graph;
+  graph.camera = camera;
+  graph.motion_prior = motion_prior;
+  graph.qc = qc;
+  graph.loss = loss;
+  return graph;
+}
+
+}  // namespace
+
 Smoother::Smoother(const PinholeCamera& camera, const Vector6& qc, const RobustLoss& loss,
-                   const SmootherOptions& options)
-    : engine_(std::make_unique<Engine>(camera, qc, loss, options)) {}
+                   const SmootherOptions& options, const MotionPrior& motion_prior)
+    : Smoother(empty_graph(camera, qc, loss, motion_prior), options) {}
 Smoother::Smoother(FactorGraph graph, const SmootherOptions& options)
     : engine_(std::make_unique<Engine>(std::move(graph), options)) {}
 Smoother::Smoother(const Smoother& other) : engine_(std::make_unique<Engine>(*other.engine_)) {}
@@ -56,8 +70,8 @@ UpdateSummary Smoother::update_everything() { return engine_->update_everything(
 OptimiseSummary Smoother::optimise(int max_iterations, double relative_tolerance) {
   return engine_->optimise(max_iterations, relative_tolerance);
 }
-std::optional<Matrix24> Smoother::neighbours(int k) { return engine_->neighbours(k); }
-std::vector<Matrix24> Smoother::chain_covariances(int first) { return engine_->chain_covariances(first); }
+std::optional<PairMatrix> Smoother::neighbours(int k) { return engine_->neighbours(k); }
+std::vector<PairMatrix> Smoother::chain_covariances(int first) { return engine_->chain_covariances(first); }
 std::optional<Matrix12> Smoother::poses(int i, int j) { return engine_->poses(i, j); }
 std::optional<Matrix12> Smoother::covariance(double t) { return engine_->covariance(t); }
 std::optional<Matrix12> Smoother::newest_covariance() { return engine_->newest_covariance(); }

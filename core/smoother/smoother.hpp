@@ -78,7 +78,9 @@ struct OptimiseSummary {
 /// throws; what cannot be done returns false or is reported in the summary of the update.
 class Smoother {
  public:
-  Smoother(const PinholeCamera& camera, const Vector6& qc, const RobustLoss& loss, const SmootherOptions& options = {});
+  /// `qc`: power spectral density of the motion prior, diagonal, body frame (MotionPrior).
+  Smoother(const PinholeCamera& camera, const Vector6& qc, const RobustLoss& loss, const SmootherOptions& options = {},
+           const MotionPrior& motion_prior = {});
 
   /// Starts from a graph with estimates, solved or not. The first update reaches back to its beginning.
   Smoother(FactorGraph graph, const SmootherOptions& options = {});
@@ -105,7 +107,7 @@ class Smoother {
 
   /// Adds a state later than the newest one, with the motion prior between them.
   void add_state(const ControlState& guess);
-  /// The same at t, extrapolated from the newest state with constant velocity; the first one at the origin, at rest.
+  /// The same at t, extrapolated from the newest state by the motion prior; the first one at the origin, at rest.
   void add_state_at(double t);
   void add_pose_prior(const PosePrior& prior);
   void add_velocity_prior(const VelocityPrior& prior);
@@ -171,11 +173,11 @@ class Smoother {
   // Marginal covariances at the linearisation points (increments on the right), in the gauge of the priors; none if the
   // system is singular. The time is proportional to the number of states since the variable was alive.
 
-  /// Joint covariance of states k and k + 1, 24 × 24.
-  std::optional<Matrix24> neighbours(int k);
+  /// Joint covariance of states k and k + 1, 24 × 24 (36 × 36 with Singer's prior).
+  std::optional<PairMatrix> neighbours(int k);
   /// The same for k = first − 1, first, ... up to the newest state but one, in the time of a few stages each. Empty if
   /// the system is singular.
-  std::vector<Matrix24> chain_covariances(int first);
+  std::vector<PairMatrix> chain_covariances(int first);
   /// Joint covariance of the poses of states i < j.
   std::optional<Matrix12> poses(int i, int j);
   /// Covariance of pose and velocity at any time within the states' span.

@@ -76,6 +76,7 @@ std::optional<Part> newest_part(const FactorGraph& graph, const StateRange& stat
 FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
   FactorGraph problem;
   problem.camera = graph.camera;
+  problem.motion_prior = graph.motion_prior;
   problem.loss = graph.loss;
   for (int k = std::max(0, part.first - 1); k <= part.last; ++k) {
     problem.qc = graph.qcs[index(k)];
@@ -173,7 +174,7 @@ AlternativeSearch::AlternativeSearch(int first, int landmark_count, std::vector<
       problem_(std::move(problem)),
       plane_(plane),
       passes_(std::max(1, kShare / work_of(problem_))),
-      forward_(problem_.camera, problem_.qc, problem_.loss),
+      forward_(problem_.camera, problem_.qc, problem_.loss, {}, problem_.motion_prior),
       in_engine_(problem_.landmarks.size(), -1) {
   forward_.add_state(problem_.states.front());
   forward_.add_pose_prior(problem_.pose_priors.front());

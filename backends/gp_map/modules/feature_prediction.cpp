@@ -6,7 +6,6 @@
 
 #include "core/geometry/in_view.hpp"
 #include "core/geometry/seen_point.hpp"
-#include "core/motion/wnoa.hpp"
 
 namespace evbench::gp_map {
 
@@ -22,10 +21,11 @@ std::vector<UndistortedFeature> FeaturePrediction::expected(Estimate& estimate, 
   const PinholeCamera& camera = graph.camera;
   const ControlState& newest = estimate.newest();
   const double dt = t - newest.t;
-  const SE3 motion = se3::exp(dt * newest.velocity), T_camera_world = (newest.T * motion).inverse();
+  const Vector6 xi = expected_motion(newest, dt, graph.motion_prior);
+  const SE3 motion = se3::exp(xi), T_camera_world = (newest.T * motion).inverse();
   Eigen::Matrix<double, 6, 12> J_pose;  // of the predicted pose's increment
-  J_pose << se3::adjoint(motion.inverse()), dt * se3::right_jacobian(dt * newest.velocity);
-  const Matrix6 drift = wnoa::process_covariance(std::abs(dt), graph.qc).topLeftCorner<6, 6>();
+  J_pose << se3::adjoint(motion.inverse()), dt * se3::right_jacobian(xi);
+  const Matrix6 drift = (motion_variance(std::abs(dt), graph.motion_prior) * graph.qc).asDiagonal();
   std::vector<UndistortedFeature> result;
   for (const auto& [id, landmark] : nearly_in_view(estimate, tracks, t, upcoming)) {
     const bool ended = tracks.at(id).ended;

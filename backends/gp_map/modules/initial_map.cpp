@@ -160,6 +160,7 @@ InitialMap InitialMapFinder::map_of(const TrackBuffer& tracks, const Candidates&
   InitialMap map;
   FactorGraph& graph = map.graph;
   graph.camera = camera_;
+  if (options_.prior == PriorKind::singer) graph.motion_prior.rate = options_.prior_rate;
   graph.qc = options_.qc_scale * Eigen::Map<const Vector6>(options_.qc.data());
   graph.loss = RobustLoss(options_.loss, options_.loss_width);
   for (const ControlState& state : path.states()) graph.add_state(state);

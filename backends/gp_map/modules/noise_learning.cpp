@@ -99,7 +99,7 @@ void NoiseLearner::follow(const FactorGraph& graph, double memory) {
 }
 
 void NoiseLearner::add(const FactorGraph& graph, int k) {
-  const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
+  const GpInterval interval = graph.interval(k);
   const IntervalObservations& observations = graph.intervals[index(k)];
   const std::size_t tracks = observations.groups().size();
   if (tracks < kFewestTracks) return;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/motion/wnoa.hpp"
-
 namespace evbench::gp_map {
 namespace {
 
@@ -24,31 +22,49 @@ constexpr double kDensityChange = 1.5;   ///< a density that changes by a larger
 std::vector<PriorEvidence> evidence_from(Smoother& smoother, int first) {
   std::vector<PriorEvidence> result;
   const FactorGraph& graph = smoother.graph();
-  for (const Matrix24& joint : smoother.chain_covariances(first)) {
+  for (const PairMatrix& joint : smoother.chain_covariances(first)) {
     const std::size_t k = index(first) + result.size();
-    result.push_back(evidence_of(GpInterval(graph.states[k - 1], graph.states[k]), joint, graph.qcs[k]));
+    result.push_back(evidence_of(graph.interval(static_cast<int>(k)), joint, graph.qcs[k]));
   }
   return result;
 }
 
 }  // namespace
 
-PriorEvidence evidence_of(const GpInterval& interval, const Matrix24& joint, const Vector6& qc) {
+namespace {
+
+/// For a motion prior with this number of orders.
+template <int Orders>
+PriorEvidence evidence(const GpInterval& interval, const PairMatrix& given, const Vector6& qc) {
+  constexpr int kState = 6 * Orders;
   const GpInterval::PriorJacobians jacobians = interval.prior_jacobians(interval.derivatives());
-  Eigen::Matrix<double, 12, 24> J;
+  Eigen::Matrix<double, kState, 2 * kState> J;
   J << jacobians.J0, jacobians.J1;
-  const Matrix12 covariance = J * joint * J.transpose();
-  const Vector12 e = interval.prior_residual();
-  const Matrix12 W = wnoa::process_information(interval.dt(), Vector6::Ones());
+  const Eigen::Matrix<double, 2 * kState, 2 * kState> joint = given;
+  const Eigen::Matrix<double, kState, kState> covariance = J * joint * J.transpose();
+  const Eigen::Matrix<double, kState, 1> e = interval.prior_residual();
+  const Eigen::MatrixXd W = interval.prior_information_of_axis();
   PriorEvidence result;
   result.t = interval.t0() + 0.5 * interval.dt();
   for (int i = 0; i < 6; ++i) {
-    const double w00 = W(i, i), w01 = W(i, i + 6), w11 = W(i + 6, i + 6);
-    result.square[i] = w00 * e[i] * e[i] + 2.0 * w01 * e[i] * e[i + 6] + w11 * e[i + 6] * e[i + 6];
-    const double trace = w00 * covariance(i, i) + 2.0 * w01 * covariance(i, i + 6) + w11 * covariance(i + 6, i + 6);
-    result.freedom[i] = std::clamp(2.0 - trace / qc[i], 0.0, 2.0);
+    double trace = 0.0;
+    const auto add = [&](int r, int c, double weight) {
+      result.square[i] += weight * e[i + 6 * c] * e[i + 6 * r];
+      trace += weight * covariance(i + 6 * c, i + 6 * r);
+    };
+    for (int r = 0; r < Orders; ++r) {
+      for (int c = 0; c < r; ++c) add(r, c, 2.0 * W(r, c));
+    }
+    for (int r = 0; r < Orders; ++r) add(r, r, W(r, r));
+    result.freedom[i] = std::clamp(Orders - trace / qc[i], 0.0, 1.0 * Orders);
   }
   return result;
+}
+
+}  // namespace
+
+PriorEvidence evidence_of(const GpInterval& interval, const PairMatrix& joint, const Vector6& qc) {
+  return interval.prior().has_acceleration() ? evidence<3>(interval, joint, qc) : evidence<2>(interval, joint, qc);
 }
 
 void PriorEvidence::add(const PriorEvidence& other, double window) {

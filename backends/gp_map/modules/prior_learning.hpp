@@ -10,15 +10,16 @@
 
 namespace evbench::gp_map {
 
-/// Evidence of one or more intervals about the power spectral density of the WNOA prior, for each axis. With e the
-/// prior's residual, Σ_e its posterior covariance and Q_1 = Q/qc, a maximum of the marginal likelihood fulfils
-///   qc = Σ eᵀ Q_1⁻¹ e / Σ (2 − tr(Q_1⁻¹ Σ_e)/qc),
+/// Evidence of one or more intervals about the power spectral density of the motion prior, for each axis. With e the
+/// prior's residual of n orders, Σ_e its posterior covariance and Q_1 = Q/qc, a maximum of the marginal likelihood
+/// fulfils
+///   qc = Σ eᵀ Q_1⁻¹ e / Σ (n − tr(Q_1⁻¹ Σ_e)/qc),
 /// squares over the degrees of freedom that the data determine (MacKay 1992, for the expected squares of Wong et al.,
 /// RA-L 2020). EM has the same fixed points, but converges slowly where the prior determines most.
 struct PriorEvidence {
   double t = 0.0;  ///< [s]
   Vector6 square = Vector6::Zero();
-  Vector6 freedom = Vector6::Zero();  ///< 0 to 2 an interval
+  Vector6 freedom = Vector6::Zero();  ///< 0 to n an interval
 
   /// Adds other evidence with a weight that fades with its distance in time, exp(−|Δt|/window).
   void add(const PriorEvidence& other, double window);
@@ -34,7 +35,7 @@ struct PriorEvidence {
 };
 
 /// Evidence of the prior over an interval; `joint`: covariance of the states at both its ends.
-PriorEvidence evidence_of(const GpInterval& interval, const Matrix24& joint, const Vector6& qc);
+PriorEvidence evidence_of(const GpInterval& interval, const PairMatrix& joint, const Vector6& qc);
 
 /// The present density from recent evidence: over a short window, so that it follows a camera that changes between slow
 /// and aggressive motion.

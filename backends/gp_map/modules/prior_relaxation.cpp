@@ -18,7 +18,7 @@ double newest_error(const Estimate& estimate) {
   constexpr double kMostDrift = 3.0;
   const FactorGraph& graph = estimate.graph();
   const std::size_t k = graph.states.size() - 1;
-  const GpInterval interval(graph.states[k - 1], graph.states[k]);
+  const GpInterval interval = graph.interval(static_cast<int>(k));
   const double scale = std::min(kMostDrift * estimate.noise.scale(), estimate.noise.scale_of_means());
   std::vector<double> errors;
   for (const auto& group : graph.intervals[k].groups()) {

@@ -17,7 +17,7 @@ constexpr std::ptrdiff_t kMany = 5;  ///< re-acquired tracks
 double distance(const Estimate& estimate, const Reappearance& seen) {
   const FactorGraph& graph = estimate.graph();
   const auto k = index(graph.interval_of(seen.t));
-  const GpInterval interval(graph.states[k - 1], graph.states[k]);
+  const GpInterval interval = graph.interval(static_cast<int>(k));
   const Vector3& position = graph.landmarks[index(seen.landmark)].position;
   return seen.inverse_sigma * reprojection_error(interval, position, {seen.t, seen.pixel, 1.0}, graph.camera) /
          estimate.noise.scale_of_means();

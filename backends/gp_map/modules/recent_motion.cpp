@@ -13,11 +13,12 @@ constexpr int kMostStates = 24;  ///< states
 /// H δ = −g with H block-tridiagonal and positive definite.
 class Chain {
  public:
-  explicit Chain(std::size_t n)
-      : diagonal(n, Matrix12::Zero()), below(n, Matrix12::Zero()), gradient(n, Vector12::Zero()) {}
+  /// `n` states of this size.
+  Chain(std::size_t n, int size)
+      : diagonal(n, StateMatrix::Zero(size, size)), below(diagonal), gradient(n, StateVector::Zero(size)) {}
 
-  std::vector<Matrix12> diagonal, below;  ///< H(i, i), H(i, i − 1)
-  std::vector<Vector12> gradient;         ///< g(i)
+  std::vector<StateMatrix> diagonal, below;  ///< H(i, i), H(i, i − 1)
+  std::vector<StateVector> gradient;         ///< g(i)
 
   /// False where H is singular.
   bool factorise() {
@@ -33,8 +34,8 @@ class Chain {
     return true;
   }
 
-  std::vector<Vector12> solution() const {
-    std::vector<Vector12> delta(diagonal.size());
+  std::vector<StateVector> solution() const {
+    std::vector<StateVector> delta(diagonal.size());
     for (std::size_t i = delta.size(); i-- > 0;) {
       delta[i] = -factors_[i].solve(gradient[i]);
       if (i + 1 < delta.size()) delta[i] -= gains_[i] * delta[i + 1];
@@ -43,12 +44,14 @@ class Chain {
   }
 
   /// Joint covariances of i and i + 1, for all i.
-  std::vector<Matrix24> covariances() const {
-    std::vector<Matrix24> joint(diagonal.size() - 1);
-    Matrix12 newer = factors_.back().solve(Matrix12::Identity());
+  std::vector<PairMatrix> covariances() const {
+    std::vector<PairMatrix> joint(diagonal.size() - 1);
+    const StateMatrix one = StateMatrix::Identity(gradient[0].size(), gradient[0].size());
+    StateMatrix newer = factors_.back().solve(one);
     for (std::size_t i = joint.size(); i-- > 0;) {
-      const Matrix12 cross = -gains_[i] * newer;
-      const Matrix12 older = factors_[i].solve(Matrix12::Identity()) - gains_[i] * cross.transpose();
+      const StateMatrix cross = -gains_[i] * newer;
+      const StateMatrix older = factors_[i].solve(one) - gains_[i] * cross.transpose();
+      joint[i].resize(2 * one.rows(), 2 * one.rows());
       joint[i] << older, cross, cross.transpose(), newer;
       newer = older;
     }
@@ -56,8 +59,8 @@ class Chain {
   }
 
  private:
-  std::vector<Eigen::LLT<Matrix12>> factors_;
-  std::vector<Matrix12> gains_;  ///< gains_[i] = H(i)⁻¹ H(i, i + 1), the older ones eliminated
+  std::vector<Eigen::LLT<StateMatrix>> factors_;
+  std::vector<StateMatrix> gains_;  ///< gains_[i] = H(i)⁻¹ H(i, i + 1), the older ones eliminated
 };
 
 }  // namespace
@@ -73,7 +76,8 @@ void RecentMotion::follow(const FactorGraph& graph, int first_state) {
       std::exchange(states_, {graph.states.begin() + first, graph.states.end()});
   if (first == newest || !prior_) return;
 
-  Chain chain(states_.size());
+  const int n = graph.state_size();
+  Chain chain(states_.size(), n);
   std::vector<Vector6> qcs;  // of the intervals between states_
   const auto add_interval = [&](int k, const ControlState& before) {
     const ControlState& state = graph.states[index(k)];
@@ -84,19 +88,22 @@ void RecentMotion::follow(const FactorGraph& graph, int first_state) {
     }
     const Vector6 qc = prior_->at(0.5 * (before.t + state.t));
     constexpr double kNoExpansion = 0.0;  // the map is held, so this prior cannot contract the world
-    linearise_interval({graph.camera, graph.loss, qc, kNoExpansion, before, state, observations, positions_},
-                       linearised_);
+    linearise_interval(
+        {graph.camera, graph.loss, graph.motion_prior, qc, kNoExpansion, before, state, observations, positions_},
+        linearised_);
     const auto i = index(k - first);
-    chain.diagonal[i] += linearised_.states.bottomRightCorner<12, 12>();
-    chain.gradient[i] += linearised_.gradient.tail<12>();
+    chain.diagonal[i] += linearised_.states.bottomRightCorner(n, n);
+    chain.gradient[i] += linearised_.gradient.tail(n);
     if (i == 0) return;  // the state before is held
-    chain.diagonal[i - 1] += linearised_.states.topLeftCorner<12, 12>();
-    chain.gradient[i - 1] += linearised_.gradient.head<12>();
-    chain.below[i] = linearised_.states.bottomLeftCorner<12, 12>();
+    chain.diagonal[i - 1] += linearised_.states.topLeftCorner(n, n);
+    chain.gradient[i - 1] += linearised_.gradient.head(n);
+    chain.below[i] = linearised_.states.bottomLeftCorner(n, n);
     qcs.push_back(qc);
   };
   if (first == 0) {
-    add_state_priors(graph, 0, chain.diagonal[0], chain.gradient[0]);
+    const smoother::StateSystem priors = smoother::state_priors(graph, 0);
+    chain.diagonal[0] += priors.H;
+    chain.gradient[0] += priors.g;
   } else {  // held at its published pose
     const ControlState& estimate = graph.states[index(first - 1)];
     const auto before = std::ranges::find(published, estimate.t, &ControlState::t);
@@ -105,13 +112,13 @@ void RecentMotion::follow(const FactorGraph& graph, int first_state) {
   for (int k = first + 1; k <= newest; ++k) add_interval(k, graph.states[index(k - 1)]);
   if (!chain.factorise()) return;
 
-  const std::vector<Vector12> delta = chain.solution();
-  if (!std::ranges::all_of(delta, [](const Vector12& d) { return d.allFinite(); })) return;
+  const std::vector<StateVector> delta = chain.solution();
+  if (!std::ranges::all_of(delta, [](const StateVector& d) { return d.allFinite(); })) return;
   for (std::size_t i = 0; i < delta.size(); ++i) states_[i] = states_[i].retract(delta[i]);
   std::vector<PriorEvidence> evidence;
-  for (const Matrix24& joint : chain.covariances()) {
+  for (const PairMatrix& joint : chain.covariances()) {
     const std::size_t i = evidence.size();
-    evidence.push_back(evidence_of(GpInterval(states_[i], states_[i + 1]), joint, qcs[i]));
+    evidence.push_back(evidence_of(GpInterval(states_[i], states_[i + 1], graph.motion_prior), joint, qcs[i]));
   }
   prior_->take(first + 1, evidence);
 }

@@ -31,7 +31,7 @@ FactorGraph simulate_problem(const CameraMotion& motion, std::uint64_t seed, boo
     const double from = j < kOld ? 0.25 : 0.45 + 1.4 * (j - kOld) / (kLandmarks - kOld);
     const auto pose = [&](double t) {
       const int k = graph.interval_of(t);
-      return GpInterval(graph.states[index(k - 1)], graph.states[index(k)]).pose(t);
+      return graph.interval(k).pose(t);
     };
     const SE3 T = pose(from);
     const Vector3 ray = T.R() * graph.camera.ray({random.uniform(20.0, 220.0), random.uniform(20.0, 160.0)});

@@ -42,8 +42,8 @@ Vector3 refine_landmark(const LandmarkViews& views, Vector3 position, const Vect
 }  // namespace
 
 void Engine::set_state_increment(int i, const double* delta) {
-  const Vector12 now = Eigen::Map<const Vector12>(delta);
-  const Vector12 before = points_.state_delta(i);
+  const StateVector now = as_vector(delta, graph_.state_size());
+  const StateVector before = points_.state_delta(i);
   state_change_ = size_of_state(i, now - before);
   changes_.push_back({{Variable::Kind::state, i}, before, state_change_});
   points_.set_state_delta(graph_, i, now);
@@ -54,9 +54,7 @@ void Engine::set_landmark_increment(int j, const double* delta, int slot) {
   const Vector3 before = points_.landmark_delta(j);
   const double size = size_of_landmark(j, now - before);
   slot_change_[index(slot)] = size;
-  Vector12 kept = Vector12::Zero();
-  kept.head<3>() = before;
-  changes_.push_back({{Variable::Kind::landmark, j}, kept, size});
+  changes_.push_back({{Variable::Kind::landmark, j}, before, size});
   points_.set_landmark_delta(graph_, j, now);
 }
 
@@ -75,12 +73,12 @@ constexpr double kSmall = 30.0;
 void Engine::solve_back(UpdateSummary& summary) {
   const Root& root = factorisation_.root();
   const int newest = factorisation_.done();
-  slot_change_.assign(index(Root::slot_of_row(root.stride()) + 1), 0.0);
-  set_state_increment(newest, delta_.data() + Root::row_of_state(newest));
+  slot_change_.assign(index(root.slot_of_row(root.stride()) + 1), 0.0);
+  set_state_increment(newest, delta_.data() + root.row_of_state(newest));
   int landmarks = 0;
   for (int slot = 0; slot < root.slots(); ++slot) {
     if (root.occupant(slot) < 0) continue;
-    set_landmark_increment(root.occupant(slot), delta_.data() + Root::row_of_slot(slot), slot);
+    set_landmark_increment(root.occupant(slot), delta_.data() + root.row_of_slot(slot), slot);
     ++landmarks;
   }
   clear_returns(newest + 1);
@@ -98,7 +96,7 @@ void Engine::solve_back(UpdateSummary& summary) {
     factorisation_.solve_stage(k, delta_.data());
     for (const Conditional& conditional : stage.conditionals) {
       for (std::size_t i = 0; i < conditional.landmarks.size(); ++i) {
-        const int j = conditional.landmarks[i], row = conditional.rows[i], slot = Root::slot_of_row(row);
+        const int j = conditional.landmarks[i], row = conditional.rows[i], slot = root.slot_of_row(row);
         if (factorisation_.eliminated_at(j) == k) {
           set_landmark_increment(j, delta_.data() + row, slot);
         } else {
@@ -128,7 +126,7 @@ void Engine::clear_returns(int k) {
 
 /// The largest change in the separator of stage k: state k and the landmarks alive after it.
 double Engine::separator_change(int k) const {
-  const int slots = Root::slot_of_row(factorisation_.stage(k).conditionals.back().extent);
+  const int slots = factorisation_.root().slot_of_row(factorisation_.stage(k).conditionals.back().extent);
   double change = state_change_;
   for (int slot = 0; slot < slots; ++slot) change = std::max(change, slot_change_[index(slot)]);
   return change;
@@ -195,7 +193,7 @@ void Engine::swap_changes() {
   for (Change& change : changes_) {
     const int i = change.variable.index;
     if (change.variable.kind == Variable::Kind::state) {
-      const Vector12 now = points_.state_delta(i);
+      const StateVector now = points_.state_delta(i);
       points_.set_state_delta(graph_, i, change.before);
       change.before = now;
     } else {

@@ -128,7 +128,7 @@ std::optional<int> Factorisation::walk_and_bring_back(const FactorGraph& graph, 
     const Stage& stage = stages_[index(k)];
     const int pivots = stage.pivots();
     walk.pass.cross(k, walk.x.data(), stride);
-    follow_moves(stage.moved, walk.x.data(), stride, columns);
+    root_.follow_moves(stage.moved, walk.x.data(), stride, columns);
     for (int i = 0; i < count; ++i) {
       if (coming[index(i)].from == k) walk.x.block<3, 3>(rows[index(i)], 3 * i).setIdentity();
     }
@@ -199,17 +199,17 @@ Return* Factorisation::bring_back(Return&& result, Walk& walk) {
   result.before = done_ + 1;
   walk.pass.cross(result.before, walk.x.data(), static_cast<int>(walk.x.rows()));
   result.slot = root_.enter(j);
-  Return* appended = returns_.append(std::move(result), walk, root_.extent());
+  Return* appended = returns_.append(std::move(result), walk, root_);
   if (appended != nullptr) landmarks_[index(j)].eliminated_at = -1;
   return appended;
 }
 
 Buffer Factorisation::increments_of_root(const LinearisationPoints& points) const {
   Buffer result(index(root_.stride()), 0.0);
-  as_vector(result.data() + Root::row_of_state(done_), 12) = points.state_delta(done_);
+  as_vector(result.data() + root_.row_of_state(done_), root_.state_size()) = points.state_delta(done_);
   for (int slot = 0; slot < root_.slots(); ++slot) {
     const int j = root_.occupant(slot);
-    if (j >= 0) as_vector(result.data() + Root::row_of_slot(slot), 3) = points.landmark_delta(j);
+    if (j >= 0) as_vector(result.data() + root_.row_of_slot(slot), 3) = points.landmark_delta(j);
   }
   return result;
 }

@@ -6,7 +6,7 @@
 namespace evbench::smoother {
 namespace {
 
-constexpr int kMaxPivots = 3 * kMaxPivotLandmarks + 12;
+constexpr int kMaxPivots = 3 * kMaxPivotLandmarks + 18;
 
 /// Copies the columns `indices` of a symmetric matrix into A and clears these rows and columns.
 void take_columns(Root& root, std::span<const int> indices, int n, double* A) {
@@ -33,12 +33,12 @@ int eliminate(Root& root, std::span<const int> landmarks, int state, Conditional
   result.rows.clear();
   result.state = state;
   for (const int landmark : landmarks) {
-    result.rows.push_back(Root::row_of_slot(root.slot_of(landmark)));
+    result.rows.push_back(root.row_of_slot(root.slot_of(landmark)));
     for (int i = 0; i < 3; ++i) indices[index(p++)] = result.rows.back() + i;
   }
   if (state >= 0) {
-    result.rows.push_back(Root::row_of_state(state));
-    for (int i = 0; i < 12; ++i) indices[index(p++)] = result.rows.back() + i;
+    result.rows.push_back(root.row_of_state(state));
+    for (int i = 0; i < root.state_size(); ++i) indices[index(p++)] = result.rows.back() + i;
   }
   const int n = root.extent();
   result.pivots = p;

@@ -12,7 +12,7 @@ namespace evbench::smoother {
 /// with L (p × p, lower) and A (rows of the root × p). Rows of A that belong to pivots or to no variable are zero.
 struct Conditional {
   std::vector<int> landmarks;  ///< pivots, in order; after them the state
-  std::vector<int> rows;       ///< first row of each pivot variable in the root's layout; it has 3 or 12 rows
+  std::vector<int> rows;       ///< first row of each pivot variable in the root's layout; a landmark has 3 rows
   int state = -1;              ///< −1: landmarks only
   int pivots = 0;              ///< p
   int extent = 0;              ///< rows of A
@@ -21,7 +21,8 @@ struct Conditional {
   /// Calls visit(first row in the root's layout, size) for each pivot variable.
   template <class Visit>
   void for_each_pivot(Visit visit) const {
-    for (std::size_t i = 0; i < rows.size(); ++i) visit(rows[i], i < landmarks.size() ? 3 : 12);
+    for (std::size_t i = 0; i < landmarks.size(); ++i) visit(rows[i], 3);
+    if (state >= 0) visit(rows.back(), pivots - 3 * static_cast<int>(landmarks.size()));
   }
 
   /// Solves δ_p = L⁻ᵀ (z − Aᵀ δ_r) from the increments in the root's layout and writes it to its rows there.

@@ -29,7 +29,7 @@ void Factorisation::solve_with_root_factor(double* x) const {
 }
 
 std::optional<Factorisation::Unknown> Factorisation::find_landmark(int j) const {
-  if (root_.slot_of(j) >= 0) return Unknown{done_ + 1, Root::row_of_slot(root_.slot_of(j))};
+  if (root_.slot_of(j) >= 0) return Unknown{done_ + 1, root_.row_of_slot(root_.slot_of(j))};
   const std::optional<int> stage = eliminated_at(j);
   if (!stage) return std::nullopt;
   for (const Conditional& conditional : stages_[index(*stage)].conditionals) {
@@ -55,7 +55,7 @@ Eigen::MatrixXd Factorisation::covariance(std::span<const Unknown> unknowns) con
   for (int k = first; k <= done_; ++k) {
     const Stage& stage = stages_[index(k)];
     forward.cross(k, x.data(), stride);
-    follow_moves(stage.moved, x.data(), stride, columns);
+    root_.follow_moves(stage.moved, x.data(), stride, columns);
     bring_in(k);
     const int pivots = stage.pivots();
     z.resize(z.size() + index(pivots * columns));
@@ -85,7 +85,7 @@ Eigen::MatrixXd Factorisation::covariance(std::span<const Unknown> unknowns) con
     back.shift(stage.returned, end, pivots);
     stage.back_substitute(end, x.data(), stride, columns);
     read(k);
-    undo_moves(stage.moved, x.data(), stride, columns);
+    root_.undo_moves(stage.moved, x.data(), stride, columns);
     back.cross(returns_, k, x.data(), stride);
   }
   return 0.5 * (result + result.transpose());
@@ -93,7 +93,7 @@ Eigen::MatrixXd Factorisation::covariance(std::span<const Unknown> unknowns) con
 
 /// The covariance of all variables in the root, in its layout; zero for free slots.
 Eigen::MatrixXd Factorisation::root_covariance() const {
-  const int n = factor_.row_of_states() + 12;
+  const int n = factor_.row_of_states() + root_.state_size();
   Eigen::MatrixXd half = Eigen::MatrixXd::Identity(n, n);  // L⁻¹
   as_matrix(factor_.column(0), n, n, factor_.stride()).triangularView<Eigen::Lower>().solveInPlace(half);
   Eigen::MatrixXd covariance(n, n);
@@ -132,8 +132,8 @@ void Factorisation::add_return_moments(int position, Eigen::MatrixXd& S) const {
 
 /// The covariance Σ of the remaining root gives that of the variables of a conditional: with X = A L⁻¹, δ_p = L⁻ᵀ y −
 /// Xᵀ δ_r and Σ_rp = −Σ_rr X, Σ_pp = (L Lᵀ)⁻¹ − Xᵀ Σ_rp. Returned landmarks extend the rest; their rows of A are −Zᵀ.
-std::vector<Matrix24> Factorisation::chain(int first) const {
-  std::vector<Matrix24> result(index(std::max(0, done_ - first + 1)));
+std::vector<PairMatrix> Factorisation::chain(int first) const {
+  std::vector<PairMatrix> result(index(std::max(0, done_ - first + 1)));
   const int size = root_.stride() + 3 * returns_.ids();
   Eigen::MatrixXd S = Eigen::MatrixXd::Zero(size, size), X, S_rp;
   S.topLeftCorner(root_.stride(), root_.stride()) = root_covariance();
@@ -181,14 +181,16 @@ std::vector<Matrix24> Factorisation::chain(int first) const {
         for (int j = 0; j < p; ++j) S(places[index(i)], places[index(j)]) = 0.5 * (S_pp(i, j) + S_pp(j, i));
       }
     }
-    const int older = Root::row_of_state(k - 1), newer = Root::row_of_state(k);
-    Matrix24& joint = result[index(k - first)];
-    joint << S.block<12, 12>(older, older), S.block<12, 12>(older, newer), S.block<12, 12>(newer, older),
-        S.block<12, 12>(newer, newer);
+    const int older = root_.row_of_state(k - 1), newer = root_.row_of_state(k);
+    const int n = root_.state_size();
+    PairMatrix& joint = result[index(k - first)];
+    joint.resize(2 * n, 2 * n);
+    joint << S.block(older, older, n, n), S.block(older, newer, n, n), S.block(newer, older, n, n),
+        S.block(newer, newer, n, n);
     const std::vector<SlotMove>& moved = stages_[index(k)].moved;
-    undo_moves(moved, S.data(), size, size);
+    root_.undo_moves(moved, S.data(), size, size);
     for (auto move = moved.rbegin(); move != moved.rend(); ++move) {
-      S.middleCols<3>(Root::row_of_slot(move->from)) = S.middleCols<3>(Root::row_of_slot(move->to));
+      S.middleCols<3>(root_.row_of_slot(move->from)) = S.middleCols<3>(root_.row_of_slot(move->to));
     }
     meet(k);
   }
@@ -220,28 +222,30 @@ bool Engine::factorise_undamped() {
   return true;
 }
 
-std::optional<Matrix24> Engine::neighbours(int k) {
+std::optional<PairMatrix> Engine::neighbours(int k) {
+  const Root& root = factorisation_.root();
   if (k < first_state() || k + 1 >= static_cast<int>(graph_.states.size()) || !factorise_undamped())
     return std::nullopt;
-  std::vector<Unknown> unknowns = following({k + 1, Root::row_of_state(k)}, 12);
-  std::ranges::copy(following({k + 1, Root::row_of_state(k + 1)}, 12), std::back_inserter(unknowns));
-  const Matrix24 joint = factorisation_.covariance(unknowns);
+  std::vector<Unknown> unknowns = following({k + 1, root.row_of_state(k)}, root.state_size());
+  std::ranges::copy(following({k + 1, root.row_of_state(k + 1)}, root.state_size()), std::back_inserter(unknowns));
+  const PairMatrix joint = factorisation_.covariance(unknowns);
   if (!joint.allFinite()) return std::nullopt;
   return joint;
 }
 
-std::vector<Matrix24> Engine::chain_covariances(int first) {
+std::vector<PairMatrix> Engine::chain_covariances(int first) {
   if (first < 1 || first <= first_state() || !factorise_undamped()) return {};
-  std::vector<Matrix24> chain = factorisation_.chain(first);
-  if (!std::ranges::all_of(chain, [](const Matrix24& joint) { return joint.allFinite(); })) return {};
+  std::vector<PairMatrix> chain = factorisation_.chain(first);
+  if (!std::ranges::all_of(chain, [](const PairMatrix& joint) { return joint.allFinite(); })) return {};
   return chain;
 }
 
 std::optional<Matrix12> Engine::poses(int i, int j) {
+  const Root& root = factorisation_.root();
   if (i < first_state() || j <= i || j >= static_cast<int>(graph_.states.size()) || !factorise_undamped())
     return std::nullopt;
-  std::vector<Unknown> unknowns = following({i + 1, Root::row_of_state(i)}, 6);
-  std::ranges::copy(following({j, Root::row_of_state(j)}, 6), std::back_inserter(unknowns));
+  std::vector<Unknown> unknowns = following({i + 1, root.row_of_state(i)}, 6);
+  std::ranges::copy(following({j, root.row_of_state(j)}, 6), std::back_inserter(unknowns));
   const Matrix12 joint = factorisation_.covariance(unknowns);
   if (!joint.allFinite()) return std::nullopt;
   return joint;
@@ -251,15 +255,16 @@ std::optional<Matrix12> Engine::covariance(double t) {
   const int k = graph_.interval_of(t);
   if (k < 1) return std::nullopt;
   if (t == graph_.states.back().t) return newest_covariance();
-  const std::optional<Matrix24> joint = neighbours(k - 1);
+  const std::optional<PairMatrix> joint = neighbours(k - 1);
   if (!joint) return std::nullopt;
-  return GpInterval(graph_.states[index(k - 1)], graph_.states[index(k)]).covariance(t, *joint, graph_.qcs[index(k)]);
+  return graph_.interval(k).covariance(t, *joint, graph_.qcs[index(k)]);
 }
 
 std::optional<Matrix12> Engine::newest_covariance() {
   if (!factorise_undamped()) return std::nullopt;
   std::array<int, 12> rows;
-  for (int i = 0; i < 12; ++i) rows[index(i)] = Root::row_of_state(static_cast<int>(graph_.states.size()) - 1) + i;
+  for (int i = 0; i < 12; ++i)
+    rows[index(i)] = factorisation_.root().row_of_state(static_cast<int>(graph_.states.size()) - 1) + i;
   const Matrix12 result = factorisation_.image_in_root(rows, Matrix12::Identity());
   if (!result.allFinite()) return std::nullopt;
   return result;
@@ -280,7 +285,8 @@ std::optional<Matrix2> Engine::predicted_covariance(int landmark, const Eigen::M
   const std::optional<Unknown> place = factorisation_.find_landmark(landmark);
   const bool in_root = place && place->stage == static_cast<int>(graph_.states.size());
   std::vector<int> rows;
-  for (int i = 0; i < 12; ++i) rows.push_back(Root::row_of_state(static_cast<int>(graph_.states.size()) - 1) + i);
+  for (int i = 0; i < 12; ++i)
+    rows.push_back(factorisation_.root().row_of_state(static_cast<int>(graph_.states.size()) - 1) + i);
   if (in_root) {
     for (int i = 0; i < 3; ++i) rows.push_back(place->row + i);
   }

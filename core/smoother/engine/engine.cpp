@@ -11,15 +11,11 @@ constexpr int kAll = std::numeric_limits<int>::max();
 
 }  // namespace
 
-Engine::Engine(const PinholeCamera& camera, const Vector6& qc, const RobustLoss& loss, const SmootherOptions& options)
-    : options_(options), points_(options.kept_intervals), factorisation_(options.grace) {
-  graph_.camera = camera;
-  graph_.qc = qc;
-  graph_.loss = loss;
-}
-
 Engine::Engine(FactorGraph graph, const SmootherOptions& options)
-    : graph_(std::move(graph)), options_(options), points_(options.kept_intervals), factorisation_(options.grace) {
+    : graph_(std::move(graph)),
+      options_(options),
+      points_(options.kept_intervals, graph_.state_size()),
+      factorisation_(options.grace, graph_.state_size()) {
   for (const ControlState& state : graph_.states) points_.add_state(state);
   for (const auto& landmark : graph_.landmarks) {
     points_.add_landmark(landmark.position);
@@ -36,7 +32,7 @@ void Engine::add_state(const ControlState& guess) {
 
 void Engine::add_state_at(double t) {
   const ControlState newest = graph_.states.empty() ? ControlState{t, SE3(), Vector6::Zero()} : graph_.states.back();
-  add_state(extrapolate(newest, t - newest.t));
+  add_state(extrapolate(newest, t - newest.t, graph_.motion_prior));
 }
 
 void Engine::add_pose_prior(const PosePrior& prior) {
@@ -139,8 +135,9 @@ bool Engine::set_state(int i, const ControlState& estimate) {
   if (i <= factorisation_.base()) return false;
   const Variable variable{Variable::Kind::state, i};
   const ControlState& point = points_.state(i);
-  Vector12 delta;
-  delta << se3::log(point.T.inverse() * estimate.T), estimate.velocity - point.velocity;
+  StateVector delta(graph_.state_size());
+  delta.head<12>() << se3::log(point.T.inverse() * estimate.T), estimate.velocity - point.velocity;
+  if (graph_.motion_prior.has_acceleration()) delta.tail<6>() = estimate.acceleration - point.acceleration;
   points_.set_state_delta(graph_, i, delta);
   move(variable);
   return true;
@@ -176,13 +173,19 @@ double Engine::reprojection_mean(int landmark) {
   return points_.errors().mean(landmark);
 }
 
-double Engine::size_of_state(int i, const Vector12& delta) const {
+double Engine::size_of_state(int i, const StateVector& delta) const {
   if (!delta.allFinite()) return std::numeric_limits<double>::infinity();
   const double dt = i > 0 ? graph_.states[index(i)].t - graph_.states[index(i - 1)].t : 0.0;
   constexpr double kHermiteMaximum = 4.0 / 27.0;  // of s (1 − s)²
   const double rotation = delta.head<3>().norm() + kHermiteMaximum * dt * delta.segment<3>(6).norm();
-  const double translation = delta.segment<3>(3).norm() + kHermiteMaximum * dt * delta.tail<3>().norm();
-  return std::max(rotation, translation / points_.nearest(i));
+  const double translation = delta.segment<3>(3).norm() + kHermiteMaximum * dt * delta.segment<3>(9).norm();
+  double turn = 0.0, way = 0.0;
+  if (graph_.motion_prior.has_acceleration()) {
+    constexpr double kQuinticMaximum = 0.018;  // of s² (1 − s)³/2
+    turn = kQuinticMaximum * dt * dt * delta.segment<3>(12).norm();
+    way = kQuinticMaximum * dt * dt * delta.tail<3>().norm();
+  }
+  return std::max(rotation + turn, (translation + way) / points_.nearest(i));
 }
 
 /// √(|δ|/d · |δ⊥|/d), the larger value of the first and the last camera that see the landmark. The error of a
@@ -217,7 +220,7 @@ int Engine::first_stage(const Variable& variable) {
 void Engine::move(const Variable& variable) {
   mark_dirty(first_stage(variable));
   if (variable.kind == Variable::Kind::state) {
-    const Vector12 delta = points_.state_delta(variable.index);
+    const StateVector delta = points_.state_delta(variable.index);
     points_.move_state(graph_, variable.index);
     factorisation_.shift_base(variable, delta.data());
   } else {

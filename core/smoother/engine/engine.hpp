@@ -14,7 +14,6 @@ namespace evbench::smoother {
 /// What Smoother hides: its documentation is there.
 class Engine {
  public:
-  Engine(const PinholeCamera& camera, const Vector6& qc, const RobustLoss& loss, const SmootherOptions& options);
   Engine(FactorGraph graph, const SmootherOptions& options);
   const FactorGraph& graph() const { return graph_; }
   int first_state() const { return std::max(0, factorisation_.base()); }
@@ -42,8 +41,8 @@ class Engine {
   UpdateSummary update();
   UpdateSummary update_everything();
   OptimiseSummary optimise(int max_iterations, double relative_tolerance);
-  std::optional<Matrix24> neighbours(int k);
-  std::vector<Matrix24> chain_covariances(int first);
+  std::optional<PairMatrix> neighbours(int k);
+  std::vector<PairMatrix> chain_covariances(int first);
   std::optional<Matrix12> poses(int i, int j);
   std::optional<Matrix12> covariance(double t);
   std::optional<Matrix12> newest_covariance();
@@ -55,8 +54,8 @@ class Engine {
   /// A variable's increment before a solve, to undo it.
   struct Change {
     Variable variable;
-    Vector12 before;  ///< of a landmark: the first 3 elements
-    double size;      ///< [rad]
+    StateVector before;  ///< of a landmark: 3 elements
+    double size;         ///< [rad]
   };
 
   /// Stage `stage` and those after it must be redone.
@@ -70,7 +69,7 @@ class Engine {
   UpdateSummary update_back(int depth);
   bool insert(int landmark, const Observation& observation);
   void marginalise_old();
-  double size_of_state(int i, const Vector12& delta) const;
+  double size_of_state(int i, const StateVector& delta) const;
   double size_of_landmark(int j, const Vector3& delta) const;
   int first_stage(const Variable& variable);
   void choose_points();

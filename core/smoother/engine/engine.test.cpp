@@ -1,4 +1,5 @@
 #include <cmath>
+#include <vector>
 
 #include "core/geometry/solve_symmetric.hpp"
 #include "core/smoother/batch_solver.hpp"
@@ -11,10 +12,17 @@
 
 namespace evbench::smoother {
 
+namespace {
+
+const std::vector<MotionPrior> kPriors = {{}, {20.0}};  // WNOA, Singer's
+
+}  // namespace
+
 TEST_CASE("Optimising with the engine ends where the batch solver ends") {
   const auto path = evbench::testing::problem_file("small.txt.gz");
   if (!path) return;
-  FactorGraph oracle = to_graph(read_problem(*path));
+  const MotionPrior prior = GENERATE(from_range(kPriors));
+  FactorGraph oracle = to_graph(read_problem(*path), prior);
   Smoother engine(oracle, {});
   const auto summary = engine.optimise(10, 1e-12);
   const auto expected = solve_batch(oracle, {20, 1e-12});
@@ -29,7 +37,8 @@ TEST_CASE("Optimising with the engine ends where the batch solver ends") {
 TEST_CASE("Covariances of the engine equal those of the batch solver") {
   const auto path = evbench::testing::problem_file("small.txt.gz");
   if (!path) return;
-  Smoother engine(to_graph(read_problem(*path)), {});
+  const MotionPrior prior = GENERATE(from_range(kPriors));
+  Smoother engine(to_graph(read_problem(*path), prior), {});
   engine.optimise(10, 1e-12);
   engine.optimise(2, 1e-12);  // once more from the optimum: covariances are those at the linearisation points
   const BatchCovariance oracle(engine.graph());
@@ -42,10 +51,10 @@ TEST_CASE("Covariances of the engine equal those of the batch solver") {
     CHECK((*joint - *expected).norm() < 1e-6 * expected->norm());
   }
   const int first = newest / 2;
-  const std::vector<Matrix24> chain = engine.chain_covariances(first);
+  const std::vector<PairMatrix> chain = engine.chain_covariances(first);
   REQUIRE(std::ssize(chain) == newest - first + 1);
   for (const int k : {first, first + 7, newest - 1, newest}) {
-    const Matrix24 expected = *engine.neighbours(k - 1);
+    const PairMatrix expected = *engine.neighbours(k - 1);
     CHECK((chain[index(k - first)] - expected).norm() < 1e-9 * expected.norm());
   }
   for (const auto& [i, j] : {std::pair(0, 1), {3, 23}, {0, newest}, {newest - 20, newest}, {newest - 1, newest}}) {
@@ -89,7 +98,8 @@ TEST_CASE("A landmark's mean reprojection error is kept to within a third of a p
 TEST_CASE("After each observation the newest states equal those of an update with the same observations") {
   const auto path = evbench::testing::problem_file("small.txt.gz");
   if (!path) return;
-  const FactorGraph all = to_graph(read_problem(*path));
+  const MotionPrior prior = GENERATE(from_range(kPriors));
+  const FactorGraph all = to_graph(read_problem(*path), prior);
   constexpr int kStates = 40;
   FactorGraph start = all;
   while (start.states.size() > kStates) start.remove_newest_state();
@@ -174,7 +184,7 @@ TEST_CASE(
   for (int k = 1; k <= first; ++k) CHECK(lag.graph().intervals[index(k)].all().empty());
   CHECK_FALSE(lag.add_observation(all.intervals[2].groups()[0].landmark, {all.states[2].t, {100.0, 100.0}, 1.0}));
 
-  const Matrix24 joint = *full.neighbours(static_cast<int>(all.states.size()) - 2);
+  const PairMatrix joint = *full.neighbours(static_cast<int>(all.states.size()) - 2);
   const Vector6 apart = se3::log(full.graph().states.back().T.inverse() * lag.graph().states.back().T);
   const Matrix6 pose = joint.block<6, 6>(12, 12);
   CHECK(apart.dot(solve_symmetric(pose, apart)) < 6.0);  // the mean if it were as far off as the truth

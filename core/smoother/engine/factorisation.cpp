@@ -163,10 +163,8 @@ std::optional<Variable> Factorisation::do_stage(int k, const FactorGraph& graph,
 }
 
 void Factorisation::add_factors(int k, const FactorGraph& graph, LinearisationPoints& points) {
-  Matrix12 H = Matrix12::Zero();
-  Vector12 g = Vector12::Zero();
-  add_state_priors(graph, k, points.state(k), H, g);
-  root_.add_state(k, H, -g);
+  const StateSystem priors = state_priors(graph, k, points.state(k));
+  root_.add_state(k, priors.H, -priors.g);
   if (k == 0) return;
   const IntervalLinearisation& linear = points.interval(graph, k);
   std::vector<int>& entered = stage(k).entered;
@@ -237,9 +235,10 @@ void Factorisation::damp(const Variable& variable, const LinearisationPoints& po
   const double lambda = damping_of(variable, damping);
   if (lambda == 0.0) return;
   if (variable.kind == Variable::Kind::state) {
-    root_.damp(Root::row_of_state(variable.index), 12, lambda, points.state_delta(variable.index).data());
+    root_.damp(root_.row_of_state(variable.index), root_.state_size(), lambda,
+               points.state_delta(variable.index).data());
   } else {
-    const int row = Root::row_of_slot(root_.slot_of(variable.index));
+    const int row = root_.row_of_slot(root_.slot_of(variable.index));
     root_.damp(row, 3, lambda, points.landmark_delta(variable.index).data());
   }
 }
@@ -256,7 +255,7 @@ std::optional<Variable> Factorisation::factorise_root(const LinearisationPoints&
     damp({Variable::Kind::landmark, j}, factor_.row_of_slot(slot), 3, points.landmark_delta(j).data());
   }
   const Variable state{Variable::Kind::state, done_};
-  damp(state, factor_.row_of_states(), 12, points.state_delta(done_).data());
+  damp(state, factor_.row_of_states(), root_.state_size(), points.state_delta(done_).data());
   const int failed = factor_.factorise();
   if (failed >= factor_.row_of_states()) return state;
   if (failed >= 0) return Variable{Variable::Kind::landmark, root_.occupant(failed / 3)};
@@ -280,7 +279,7 @@ void Factorisation::solve_stage(int k, double* delta) {
   }
   back_.shift(stage.returned, right_hand_side_.data(), stage.pivots());
   stage.back_substitute(right_hand_side_.data(), delta);
-  undo_moves(stage.moved, delta, 0, 1);
+  root_.undo_moves(stage.moved, delta, 0, 1);
   back_.cross(returns_, k, delta);
 }
 
@@ -333,17 +332,17 @@ int Factorisation::marginalise(int stage) {
 
 int Factorisation::row_in_base(const Variable& variable) const {
   if (base_ < 0) return -1;
-  if (variable.kind == Variable::Kind::state) return variable.index == base_ ? Root::row_of_state(base_) : -1;
+  if (variable.kind == Variable::Kind::state) return variable.index == base_ ? root_.row_of_state(base_) : -1;
   const auto& occupants = snapshots_.begin()->second.occupant;
   const auto found = std::ranges::find(occupants, variable.index);
-  return found == occupants.end() ? -1 : Root::row_of_slot(static_cast<int>(found - occupants.begin()));
+  return found == occupants.end() ? -1 : root_.row_of_slot(static_cast<int>(found - occupants.begin()));
 }
 
 bool Factorisation::in_base(const Variable& variable) const { return row_in_base(variable) >= 0; }
 
 void Factorisation::shift_base(const Variable& variable, const double* shift) {
   const int row = row_in_base(variable);
-  const int size = variable.kind == Variable::Kind::state ? 12 : 3;
+  const int size = variable.kind == Variable::Kind::state ? root_.state_size() : 3;
   if (row >= 0) snapshots_.begin()->second.shift(row, size, shift);
 }
 

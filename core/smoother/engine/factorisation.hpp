@@ -50,8 +50,9 @@ class Factorisation {
     void back_substitute(double* z, double* x, int x_stride, int columns) const;
   };
 
-  /// `grace`: a landmark that is no longer observed stays in the root for this many states [≥ 1].
-  explicit Factorisation(int grace) : grace_(grace) {}
+  /// `grace`: a landmark that is no longer observed stays in the root for this many states [≥ 1]; `state_size`: rows of
+  /// a state.
+  Factorisation(int grace, int state_size) : grace_(grace), root_(state_size) {}
 
   /// The last stage that is done, −1: none.
   int done() const { return done_; }
@@ -104,7 +105,7 @@ class Factorisation {
 
   /// Joint covariances of states k − 1 and k for k = first, first + 1, ..., done(), by one backward pass that inverts
   /// selected blocks only. It costs about as much as the stages did.
-  std::vector<Matrix24> chain(int first) const;
+  std::vector<PairMatrix> chain(int first) const;
 
   /// Covariance of J x for x in these rows of the present root.
   Eigen::MatrixXd image_in_root(std::span<const int> rows, const Eigen::MatrixXd& J) const;
@@ -121,7 +122,7 @@ class Factorisation {
   bool in_base(const Variable& variable) const;
   /// Was landmark j eliminated before the base? It can no longer be observed.
   bool is_marginalised(int j) const { return landmarks_[index(j)].marginalised; }
-  /// Moves the linearisation point of a variable of the base by `shift` (12 or 3 elements).
+  /// Moves the linearisation point of a variable of the base by `shift`.
   void shift_base(const Variable& variable, const double* shift);
   /// The graph has another scale anchor. The information of a marginalised one stays in the base.
   void renew_anchor() { anchor_in_base_ = false; }

@@ -108,7 +108,7 @@ TEST_CASE("A scale anchor that has been marginalised is not added again") {
   }
   REQUIRE(session.engine.first_state() > 5);
   const int newest = static_cast<int>(full.engine.graph().states.size()) - 1;
-  const Matrix24 expected = *full.engine.neighbours(newest - 1);
+  const PairMatrix expected = *full.engine.neighbours(newest - 1);
   CHECK((*session.engine.neighbours(newest - 1) - expected).norm() < 1e-3 * expected.norm());
 }
 
@@ -169,10 +169,10 @@ TEST_CASE("A covariance query between a change and its update does not make the 
 TEST_CASE("A covariance query after the removal of states covers the remaining ones") {
   Smoother engine = testing::DrawnProblem({.qc = 0.01, .pixel_sigma = 0.5}, 1).solve_incrementally();
   for (int taken = 0; taken < 3; ++taken) engine.remove_newest_state();
-  const std::vector<Matrix24> chain = engine.chain_covariances(1);
+  const std::vector<PairMatrix> chain = engine.chain_covariances(1);
   REQUIRE(chain.size() == engine.graph().states.size() - 1);
   engine.update();
-  const std::vector<Matrix24> after = engine.chain_covariances(1);
+  const std::vector<PairMatrix> after = engine.chain_covariances(1);
   REQUIRE(after.size() == chain.size());
   for (std::size_t k = 0; k < chain.size(); ++k) CHECK((chain[k] - after[k]).norm() < 0.1 * after[k].norm());
 }

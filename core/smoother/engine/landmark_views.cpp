@@ -9,17 +9,17 @@ using namespace lanes;  // NOLINT: this file works by lanes
 LandmarkViews::LandmarkViews(const FactorGraph& graph, int landmark)
     : graph_(graph), prior_(graph.landmarks[index(landmark)].prior) {
   for (const int k : graph.landmarks[index(landmark)].intervals) {
-    const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
-    const Interval shared(interval);
+    const GpInterval interval = graph.interval(k);
     const Matrix3 R = interval.T0().R().transpose();
     const Vector3 p = -(R * interval.T0().p);
-    with_range_of(interval, [&]<Range range>() {
+    with_kind_of(interval, [&]<int orders, Range range>() {
+      const Interval<orders> shared(interval);
       for (auto rest = graph.intervals[index(k)].of(landmark); !rest.empty();) {
         const std::size_t count = std::min<std::size_t>(kLanes, rest.size());
         Measured observed(shared.t0);
         for (std::size_t i = 0; i < count; ++i) observed.set(i, rest[i]);
         rest = rest.subspan(count);
-        views_.push_back({R, p, motion(tangent<range>(shared, hermite_basis(shared, observed.t))), observed});
+        views_.push_back({R, p, motion(tangent<range, orders>(shared, basis_at(shared, observed.t))), observed});
       }
     });
   }

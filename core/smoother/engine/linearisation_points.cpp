@@ -6,7 +6,7 @@ namespace evbench::smoother {
 
 void LinearisationPoints::add_state(const ControlState& state) {
   states_.push_back(state);
-  state_deltas_.push_back(Vector12::Zero());
+  state_deltas_.emplace_back(StateVector::Zero(state_size_));
   nearest_.push_back(std::numeric_limits<double>::infinity());
   if (ring_.empty()) ring_.resize(index(kept_));
 }
@@ -24,7 +24,7 @@ void LinearisationPoints::add_landmark(const Vector3& position) {
   landmark_deltas_.push_back(Vector3::Zero());
 }
 
-void LinearisationPoints::set_state_delta(FactorGraph& graph, int i, const Vector12& delta) {
+void LinearisationPoints::set_state_delta(FactorGraph& graph, int i, const StateVector& delta) {
   state_deltas_[index(i)] = delta;
   graph.states[index(i)] = states_[index(i)].retract(delta);
 }
@@ -64,8 +64,8 @@ const IntervalLinearisation& LinearisationPoints::interval(const FactorGraph& gr
     nearest = std::min(nearest, (positions_.back() - states_[index(k)].T.p).squaredNorm());
   }
   nearest_[index(k)] = std::sqrt(nearest);
-  linearise_interval({graph.camera, graph.loss, graph.qcs[index(k)], graph.expansions[index(k)], states_[index(k - 1)],
-                      states_[index(k)], observations, positions_},
+  linearise_interval({graph.camera, graph.loss, graph.motion_prior, graph.qcs[index(k)], graph.expansions[index(k)],
+                      states_[index(k - 1)], states_[index(k)], observations, positions_},
                      kept.linear);
   linearised_observations_ += static_cast<std::int64_t>(observations.all().size());
   errors_.set(k, kept.linear.couplings);

@@ -13,8 +13,8 @@ namespace evbench::smoother {
 /// past. The graph contains the estimates: estimate = point ⊕ increment for every variable at all times.
 class LinearisationPoints {
  public:
-  /// `kept`: number of newest intervals whose linearisation is kept.
-  explicit LinearisationPoints(int kept) : kept_(kept) {}
+  /// `kept`: number of newest intervals whose linearisation is kept; `state_size`: rows of a state's increment.
+  LinearisationPoints(int kept, int state_size) : kept_(kept), state_size_(state_size) {}
 
   void add_state(const ControlState& state);
   void remove_newest_state();
@@ -22,11 +22,11 @@ class LinearisationPoints {
 
   const ControlState& state(int i) const { return states_[index(i)]; }
   const Vector3& landmark(int j) const { return landmarks_[index(j)]; }
-  const Vector12& state_delta(int i) const { return state_deltas_[index(i)]; }
+  const StateVector& state_delta(int i) const { return state_deltas_[index(i)]; }
   const Vector3& landmark_delta(int j) const { return landmark_deltas_[index(j)]; }
 
   /// Sets the increment and with it the graph's estimate.
-  void set_state_delta(FactorGraph& graph, int i, const Vector12& delta);
+  void set_state_delta(FactorGraph& graph, int i, const StateVector& delta);
   void set_landmark_delta(FactorGraph& graph, int j, const Vector3& delta);
 
   /// Moves the linearisation point to the estimate.
@@ -58,10 +58,10 @@ class LinearisationPoints {
   };
   Kept& place(int k) { return ring_[index(k) % ring_.size()]; }
 
-  int kept_;
+  int kept_, state_size_;
   std::vector<ControlState> states_;
   std::vector<Vector3> landmarks_;
-  std::vector<Vector12> state_deltas_;
+  std::vector<StateVector> state_deltas_;
   std::vector<Vector3> landmark_deltas_;
   std::vector<Kept> ring_;       ///< interval k at k mod kept; a miss overwrites
   std::vector<double> nearest_;  ///< by interval

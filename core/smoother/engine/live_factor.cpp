@@ -28,9 +28,10 @@ bool LiveFactor::build(const Root& root, int newest, const IntervalLinearisation
   occupants_.clear();
   for (int slot = 0; slot < root.slots(); ++slot) occupants_.push_back(root.occupant(slot));
   factor_.load(root, newest - 1, 2);
+  state_rows_ = 2 * root.state_size();
   const int states = factor_.row_of_states();
-  for (int c = 0; c < 24; ++c) {
-    for (int r = c; r < 24; ++r) factor_.column(states + c)[states + r] += open.states(r, c);
+  for (int c = 0; c < state_rows_; ++c) {
+    for (int r = c; r < state_rows_; ++r) factor_.column(states + c)[states + r] += open.states(r, c);
     factor_.b()[states + c] -= open.gradient(c);
   }
   for (const auto& coupling : open.couplings) {
@@ -39,7 +40,7 @@ bool LiveFactor::build(const Root& root, int newest, const IntervalLinearisation
     for (int c = 0; c < 3; ++c) {
       double* column = factor_.column(row + c);
       for (int r = c; r < 3; ++r) column[row + r] += coupling.landmark_landmark(r, c);
-      for (int r = 0; r < 24; ++r) column[states + r] += coupling.landmark_states(c, r);
+      for (int r = 0; r < state_rows_; ++r) column[states + r] += coupling.landmark_states(c, r);
       factor_.b()[row + c] -= coupling.gradient(c);
     }
   }
@@ -51,6 +52,7 @@ bool LiveFactor::build(const Root& root, int newest, const IntervalLinearisation
 }
 
 void LiveFactor::add(int landmark, const ObservationRows& rows, double weight) {
+  if (rows.states.cols() == 0) return;
   const double scale = std::sqrt(weight);
   const int size = factor_.size(), stride = factor_.stride();
   const int first = factor_.row_of_slot(slot_of(landmark)), states = factor_.row_of_states();
@@ -62,13 +64,13 @@ void LiveFactor::add(int landmark, const ObservationRows& rows, double weight) {
     v[first + i] = scale * rows.landmark(0, i);
     w[first + i] = scale * rows.landmark(1, i);
   }
-  for (int i = 0; i < 24; ++i) {
+  for (int i = 0; i < state_rows_; ++i) {
     v[states + i] = scale * rows.states(0, i);
     w[states + i] = scale * rows.states(1, i);
   }
   v[size] = -scale * rows.e(0);
   w[size] = -scale * rows.e(1);
-  for (int k = first; k < states + 24; ++k) {
+  for (int k = first; k < states + state_rows_; ++k) {
     double* L = factor_.column(k);
     const Rotation a(L[k], v[k]);
     const Rotation b(L[k], w[k]);
@@ -91,11 +93,11 @@ void LiveFactor::add(int landmark, const ObservationRows& rows, double weight) {
   }
 }
 
-Vector24 LiveFactor::solve_states() const {
+PairVector LiveFactor::solve_states() const {
   const int states = factor_.row_of_states();
-  const auto rows = as_matrix(factor_.column(states), factor_.stride(), 24, factor_.stride());
-  Vector24 x = rows.row(factor_.size()).transpose();
-  rows.middleRows<24>(states).transpose().triangularView<Eigen::Upper>().solveInPlace(x);
+  const auto rows = as_matrix(factor_.column(states), factor_.stride(), state_rows_, factor_.stride());
+  PairVector x = rows.row(factor_.size()).transpose();
+  rows.middleRows(states, state_rows_).transpose().triangularView<Eigen::Upper>().solveInPlace(x);
   return x;
 }
 

@@ -12,7 +12,7 @@ namespace evbench::smoother {
 struct ObservationRows {
   Vector2 e = Vector2::Zero();
   Matrix23 landmark = Matrix23::Zero();
-  Eigen::Matrix<double, 2, 24> states = Eigen::Matrix<double, 2, 24>::Zero();
+  Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, 36> states;  ///< empty: no effect
 };
 
 /// The factor of everything alive while an interval (n, n+1) is open: the root after stage n extended by state n+1,
@@ -34,7 +34,7 @@ class LiveFactor {
   void add(int landmark, const ObservationRows& rows, double weight);
 
   /// The increments of states n and n+1.
-  Vector24 solve_states() const;
+  PairVector solve_states() const;
 
  private:
   /// The landmark's slot in that root; beyond all slots if it was not there.
@@ -43,6 +43,7 @@ class LiveFactor {
   }
 
   int newest_ = -1;
+  int state_rows_ = 0;  ///< of both states
   RootFactor factor_;
   std::vector<int> occupants_;  ///< of the slots of that root
   Buffer v_, w_;

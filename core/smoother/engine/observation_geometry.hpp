@@ -66,31 +66,50 @@ Coefficients coefficients(Lane z) {
 
 inline Lane3 lane3(const Vector3& v) { return {broadcast(v.x()), broadcast(v.y()), broadcast(v.z())}; }
 
-/// The parameters that all observations of an interval share.
+/// The parameters that all observations of an interval share, under a motion prior with this number of orders
+/// (MotionPrior). ξ(τ) is a combination of `kTerms` vectors: ϖ_0, ξ_1, w_1, and with 3 orders ϖ_0', c_1 (GpInterval).
+template <int Orders>
 struct Interval {
+  static constexpr std::size_t kTerms = 2 * Orders - 1;
+
   explicit Interval(const GpInterval& interval)
-      : t0(interval.t0()),
-        dt(interval.dt()),
-        velocity_phi(lane3(interval.velocity0().head<3>())),
-        velocity_rho(lane3(interval.velocity0().tail<3>())),
-        xi1_phi(lane3(interval.xi1().head<3>())),
-        xi1_rho(lane3(interval.xi1().tail<3>())),
-        w1_phi(lane3(interval.w1().head<3>())),
-        w1_rho(lane3(interval.w1().tail<3>())) {}
+      : t0(interval.t0()), dt(interval.dt()), singer(interval.singer_basis()) {
+    set(0, interval.velocity0());
+    set(1, interval.xi1());
+    set(2, interval.w1());
+    if constexpr (Orders == 3) {
+      set(3, interval.acceleration0());
+      set(4, interval.c1());
+    }
+  }
 
   double t0, dt;
-  Lane3 velocity_phi, velocity_rho, xi1_phi, xi1_rho, w1_phi, w1_rho;
+  std::array<Lane3, kTerms> phi, rho;
+  const singer::Basis& singer;
+
+ private:
+  void set(std::size_t term, const Vector6& xi) {
+    phi[term] = lane3(xi.head<3>());
+    rho[term] = lane3(xi.tail<3>());
+  }
 };
 
-/// Calls call.operator()<range>() with the range of an upper bound of |φ(τ)| in the interval.
+/// Calls call.operator()<orders, range>() for the orders of the motion prior and the range of an upper bound of |φ(τ)|
+/// in the interval.
 template <class Call>
-void with_range_of(const GpInterval& interval, Call call) {
-  const double bound =
-      4.0 / 27.0 * interval.dt() * (interval.velocity0().head<3>().norm() + interval.w1().head<3>().norm()) +
-      interval.xi1().head<3>().norm();
-  if (bound < 1.0) return call.template operator()<Range::small>();
-  if (bound < 3.5) return call.template operator()<Range::medium>();
-  call.template operator()<Range::any>();
+void with_kind_of(const GpInterval& interval, Call call) {
+  const auto with_range = [&]<int orders>(double bound) {
+    if (bound < 1.0) return call.template operator()<orders, Range::small>();
+    if (bound < 3.5) return call.template operator()<orders, Range::medium>();
+    call.template operator()<orders, Range::any>();
+  };
+  const double dt = interval.dt(), end = interval.xi1().head<3>().norm();
+  const double velocities = interval.velocity0().head<3>().norm() + interval.w1().head<3>().norm();
+  if (!interval.prior().has_acceleration())
+    return with_range.template operator()<2>(4.0 / 27.0 * dt * velocities + end);
+  // Between the cubic and the quintic Hermite polynomial, whose weights are at most 0.2 Δt and 0.018 Δt².
+  const double accelerations = interval.acceleration0().head<3>().norm() + interval.c1().head<3>().norm();
+  with_range.template operator()<3>(0.2 * dt * velocities + 0.018 * dt * dt * accelerations + end);
 }
 
 /// One observation per lane; `present` is 0 in a lane without one.
@@ -112,11 +131,34 @@ struct Measured {
   }
 };
 
-/// The weights a, b, c of ξ(τ) = a ϖ_0 + b ξ_1 + c w_1 (GpInterval).
-inline std::array<Lane, 3> hermite_basis(const Interval& interval, Lane t) {
+/// The weights of the vectors of Interval in ξ(τ).
+template <int Orders>
+using Basis = std::array<Lane, Interval<Orders>::kTerms>;
+
+inline Basis<2> basis_at(const Interval<2>& interval, Lane t) {
   const Lane s = (t - interval.t0) / interval.dt;
   const Lane rest = 1.0 - s;
   return {interval.dt * s * rest * rest, s * s * (3.0 - 2.0 * s), -interval.dt * s * s * rest};
+}
+
+/// singer::weights() for lanes.
+inline Basis<3> basis_at(const Interval<3>& interval, Lane t) {
+  const singer::Basis& of = interval.singer;
+  const Lane s = (t - interval.t0) / interval.dt;
+  const Lane square = s * s, z = of.square * square;
+  Lane even{}, odd{};
+  for (int n = of.terms; n-- > 0;) {
+    even = even * z + singer::kEven[index(n)];
+    odd = odd * z + singer::kOdd[index(n)];
+  }
+  const Lane p3 = square * s, p4 = square * square * even, p5 = square * square * s * odd;
+  const auto from_end = [&](Eigen::Index c) {
+    return p3 * of.from_end(0, c) + p4 * of.from_end(1, c) + p5 * of.from_end(2, c);
+  };
+  const Lane end = from_end(0), end_velocity = from_end(1), end_acceleration = from_end(2);
+  const double dt = of.dt, half = 0.5 * dt * dt;
+  return {dt * s - dt * end - end_velocity, end, end_velocity,
+          half * square - half * end - dt * end_velocity - end_acceleration, end_acceleration};
 }
 
 /// ξ(τ) = (φ, ρ) and the terms of its exponential.
@@ -126,11 +168,15 @@ struct Tangent {
   Lane s1;  ///< sin θ/θ
 };
 
-template <Range range>
-Tangent tangent(const Interval& interval, const std::array<Lane, 3>& basis) {
+template <Range range, int Orders>
+Tangent tangent(const Interval<Orders>& interval, const Basis<Orders>& basis) {
   Tangent g;
-  g.phi = basis[0] * interval.velocity_phi + basis[1] * interval.xi1_phi + basis[2] * interval.w1_phi;
-  g.rho = basis[0] * interval.velocity_rho + basis[1] * interval.xi1_rho + basis[2] * interval.w1_rho;
+  g.phi = basis[0] * interval.phi[0] + basis[1] * interval.phi[1] + basis[2] * interval.phi[2];
+  g.rho = basis[0] * interval.rho[0] + basis[1] * interval.rho[1] + basis[2] * interval.rho[2];
+  if constexpr (Orders == 3) {
+    g.phi = g.phi + basis[3] * interval.phi[3] + basis[4] * interval.phi[4];
+    g.rho = g.rho + basis[3] * interval.rho[3] + basis[4] * interval.rho[4];
+  }
   const Lane theta2 = dot(g.phi, g.phi);
   g.k = coefficients<range>(theta2);
   g.s1 = 1.0 - theta2 * g.k.c;

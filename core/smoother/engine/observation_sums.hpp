@@ -10,27 +10,33 @@ namespace evbench::smoother::lanes {
 inline constexpr int kPairs = 21;  ///< of a symmetric 6 × 6
 
 /// The data that all observations of the interval share.
+template <int Orders>
 struct Shared {
   const RobustLoss& loss;
   const PinholeCamera& camera;
-  Interval interval;
+  Interval<Orders> interval;
 };
 
-/// Sums over the interval, by lane; the lanes are added up at the end.
+/// Sums over the interval, by lane; the lanes are added up at the end. y = (ϖ_0, ξ_1, w_1, ...), the vectors of
+/// Interval.
+template <int Orders>
 struct IntervalSums {
-  std::array<std::array<Lane, kPairs>, 6> yy{};  ///< (ϖ_0 ϖ_0), (ξ_1 ϖ_0), (ξ_1 ξ_1), (w_1 ϖ_0), (w_1 ξ_1), (w_1 w_1)
-  std::array<Lane, 18> gradient_y{};
-  std::array<Lane, kPairs> TT{};             ///< (δT_0, δT_0)
-  std::array<std::array<Lane, 6>, 18> yT{};  ///< (y, δT_0)
+  static constexpr std::size_t kTerms = Interval<Orders>::kTerms, kRows = 6 * kTerms;
+  /// (y_0 y_0), (y_1 y_0), (y_1 y_1), (y_2 y_0), ...
+  std::array<std::array<Lane, kPairs>, kTerms*(kTerms + 1) / 2> yy{};
+  std::array<Lane, kRows> gradient_y{};
+  std::array<Lane, kPairs> TT{};                ///< (δT_0, δT_0)
+  std::array<std::array<Lane, 6>, kRows> yT{};  ///< (y, δT_0)
   std::array<Lane, 6> gradient_T{};
   Lane cost{};
 };
 
 /// Sums over one landmark's observations in each lane.
+template <int Orders>
 struct LandmarkSums {
   std::array<std::array<Lane, 3>, 3> mm{};  ///< lower triangle
   std::array<Lane, 3> gradient{};
-  std::array<std::array<Lane, 18>, 3> my{};
+  std::array<std::array<Lane, IntervalSums<Orders>::kRows>, 3> my{};
   Lane error{},
       behind{};  ///< [px] sum of reprojection errors; number of observations with the landmark behind the camera
 };
@@ -59,8 +65,10 @@ inline Row row(const Tangent& g, const Lane3& q, const Lane3& D) {
 }
 
 /// Adds JᵀJ and Jᵀe of one observation per lane, by blocks.
-inline void accumulate(const std::array<Row, 2>& rows, const std::array<Lane, 3>& basis, const std::array<Lane, 2>& e,
-                       Lane weight, LandmarkSums& landmark, IntervalSums& sums) {
+template <int Orders>
+void accumulate(const std::array<Row, 2>& rows, const Basis<Orders>& basis, const std::array<Lane, 2>& e, Lane weight,
+                LandmarkSums<Orders>& landmark, IntervalSums<Orders>& sums) {
+  constexpr std::size_t kTerms = Interval<Orders>::kTerms;
   std::array<Lane, 6> Ge;
   std::array<std::array<Lane, 6>, 2> wG;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -68,15 +76,17 @@ inline void accumulate(const std::array<Row, 2>& rows, const std::array<Lane, 3>
     wG[1][i] = weight * rows[1].xi[i];
     Ge[i] = wG[0][i] * e[0] + wG[1][i] * e[1];
   }
-  const std::array<Lane, 6> products = {basis[0] * basis[0], basis[1] * basis[0], basis[1] * basis[1],
-                                        basis[2] * basis[0], basis[2] * basis[1], basis[2] * basis[2]};
+  std::array<Lane, kTerms*(kTerms + 1) / 2> products;
+  for (std::size_t p = 0, pair = 0; p < kTerms; ++p) {
+    for (std::size_t q = 0; q <= p; ++q, ++pair) products[pair] = basis[p] * basis[q];
+  }
   std::size_t n = 0;
   for (std::size_t i = 0; i < 6; ++i) {
     for (std::size_t j = 0; j <= i; ++j, ++n) {
       const Lane GG = wG[0][i] * rows[0].xi[j] + wG[1][i] * rows[1].xi[j];
-      for (std::size_t p = 0; p < 6; ++p) sums.yy[p][n] += products[p] * GG;
+      for (std::size_t p = 0; p < products.size(); ++p) sums.yy[p][n] += products[p] * GG;
     }
-    for (std::size_t p = 0; p < 3; ++p) sums.gradient_y[6 * p + i] += basis[p] * Ge[i];
+    for (std::size_t p = 0; p < kTerms; ++p) sums.gradient_y[6 * p + i] += basis[p] * Ge[i];
   }
   for (std::size_t r = 0; r < 3; ++r) {
     const Lane m0 = weight * rows[0].m[r];
@@ -85,17 +95,17 @@ inline void accumulate(const std::array<Row, 2>& rows, const std::array<Lane, 3>
     for (std::size_t c = 0; c <= r; ++c) landmark.mm[r][c] += m0 * rows[0].m[c] + m1 * rows[1].m[c];
     for (std::size_t i = 0; i < 6; ++i) {
       const Lane BG = rows[0].m[r] * wG[0][i] + rows[1].m[r] * wG[1][i];
-      for (std::size_t p = 0; p < 3; ++p) landmark.my[r][6 * p + i] += basis[p] * BG;
+      for (std::size_t p = 0; p < kTerms; ++p) landmark.my[r][6 * p + i] += basis[p] * BG;
     }
   }
 }
 
 /// Adds one observation of the landmark m = T_0⁻¹ l of each lane.
-template <Range range>
-void add_observation(const Shared& shared, const Lane3& m, const Measured& z, LandmarkSums& landmark,
-                     IntervalSums& sums) {
-  const std::array<Lane, 3> basis = hermite_basis(shared.interval, z.t);
-  const Tangent g = tangent<range>(shared.interval, basis);
+template <Range range, int Orders>
+void add_observation(const Shared<Orders>& shared, const Lane3& m, const Measured& z, LandmarkSums<Orders>& landmark,
+                     IntervalSums<Orders>& sums) {
+  const Basis<Orders> basis = basis_at(shared.interval, z.t);
+  const Tangent g = tangent<range, Orders>(shared.interval, basis);
   const Lane3 q = motion(g).into_camera(m);
   const Residual residual = residual_of(shared.camera, q, z);
   const LaneLoss loss = loss_of(shared.loss, residual.square);
@@ -104,7 +114,7 @@ void add_observation(const Shared& shared, const Lane3& m, const Measured& z, La
   sums.cost += 0.5 * z.present * loss.value;
   const Lane weight = residual.in_front ? z.present * loss.weight : Lane{};
   const ImageRows D = image_rows(shared.camera, residual, z);
-  accumulate({row(g, q, D.x), row(g, q, D.y)}, basis, {residual.e0, residual.e1}, weight, landmark, sums);
+  accumulate<Orders>({row(g, q, D.x), row(g, q, D.y)}, basis, {residual.e0, residual.e1}, weight, landmark, sums);
 }
 
 }  // namespace evbench::smoother::lanes

@@ -15,6 +15,7 @@ ObservationRows linearise(const GpInterval& interval, const GpInterval::Derivati
   rows.e = z.whitening * Vector2(camera.project(q) - z.pixel);
   rows.landmark = D * at_z.T.R().transpose();
   const Matrix26 pose = D * seen_point_jacobian(q);
+  rows.states.resize(2, at_z.J0.cols() + at_z.J1.cols());
   rows.states << pose * at_z.J0.topRows<6>(), pose * at_z.J1.topRows<6>();
   return rows;
 }
@@ -29,7 +30,7 @@ bool Engine::open_newest_interval() {
   if (factorisation_.awaits_return()) return false;
   const ControlState& older = points_.state(newest - 1);
   const ControlState& newer = points_.state(newest);
-  live_interval_.emplace(older, newer);
+  live_interval_.emplace(older, newer, graph_.motion_prior);
   live_derivatives_ = live_interval_->derivatives();
   return live_.build(factorisation_.root(), newest, points_.interval(graph_, newest));
 }
@@ -42,13 +43,14 @@ bool Engine::add_observation_and_update(int landmark, const Observation& observa
   const ObservationRows rows = linearise(*live_interval_, live_derivatives_, graph_.camera, points_.landmark(landmark),
                                          graph_.scaled(landmark, observation));
   live_.add(landmark, rows, graph_.loss.weight(rows.e.squaredNorm()));
-  const Vector24 delta = live_.solve_states();
+  const PairVector delta = live_.solve_states();
   if (!delta.allFinite()) return false;
+  const int n = graph_.state_size();
   // The separator of older states has changed.
   factorisation_.stage(newest - 1).skipped +=
-      size_of_state(newest - 1, delta.head<12>() - points_.state_delta(newest - 1));
-  points_.set_state_delta(graph_, newest - 1, delta.head<12>());
-  points_.set_state_delta(graph_, newest, delta.tail<12>());
+      size_of_state(newest - 1, delta.head(n) - points_.state_delta(newest - 1));
+  points_.set_state_delta(graph_, newest - 1, delta.head(n));
+  points_.set_state_delta(graph_, newest, delta.tail(n));
   return true;
 }
 

@@ -50,6 +50,8 @@ SmootherOptions draw_options(SmootherOptions options, std::uint64_t seed) {
   return options;
 }
 
+MotionPrior draw_prior(std::uint64_t seed) { return seed % 7 < 3 ? MotionPrior{20.0} : MotionPrior{}; }
+
 /// Checks equality to 1e-7, or to the bound of rounding in a few ill-conditioned problems.
 class Agreement {
  public:
@@ -91,7 +93,7 @@ void play(RandomSession& session) {
 
 /// Returns whether the engine converged.
 bool compare_with_batch(std::uint64_t seed) {
-  RandomSession session(seed, {draw_options({}, seed)});
+  RandomSession session(seed, {.engine = draw_options({}, seed), .motion_prior = draw_prior(seed)});
   play(session);
   session.update();
   Smoother& engine = session.engine();
@@ -137,7 +139,7 @@ TEST_CASE("In linear problems, redoing only what changed gives the states of red
   play_fifth(2, [&](std::uint64_t seed) {
     ++all;
     const SmootherOptions options = draw_options(linear_options(), seed);
-    RandomSession session(seed, {.engine = options, .anchor = false});
+    RandomSession session(seed, {.engine = options, .motion_prior = draw_prior(seed), .anchor = false});
     play(session);
     session.update();
     Smoother& engine = session.engine();
@@ -186,7 +188,10 @@ TEST_CASE("With a lag the states equal those of full history in linear problems"
   int marginalised = 0, all = 0;
   play_fifth(3, [&](std::uint64_t seed) {
     ++all;
-    SessionOptions options{.engine = draw_options(linear_options(), seed), .anchor = false, .full_twin = true};
+    SessionOptions options{.engine = draw_options(linear_options(), seed),
+                           .motion_prior = draw_prior(seed),
+                           .anchor = false,
+                           .full_twin = true};
     options.engine.lag = 0.1 + 0.2 * static_cast<double>(seed % 5);
     RandomSession session(seed, options);
     play(session);
@@ -202,7 +207,7 @@ TEST_CASE("With a lag the states equal those of full history in linear problems"
 TEST_CASE("With a lag no more is kept than the lag and the spacing of snapshots require, after random operations",
           "[random]") {
   play_fifth(4, [](std::uint64_t seed) {
-    SessionOptions options{.engine = draw_options({}, seed)};
+    SessionOptions options{.engine = draw_options({}, seed), .motion_prior = draw_prior(seed)};
     options.engine.lag = 0.1 + 0.2 * static_cast<double>(seed % 5);
     RandomSession session(seed, options);
     play(session);

@@ -196,7 +196,7 @@ int Returns::new_id() {
   return ids_++;
 }
 
-Return* Returns::append(Return&& result, const Walk& walk, int extent) {
+Return* Returns::append(Return&& result, const Walk& walk, const Root& root) {
   constexpr double kLeastUnknown = 1e-8;
   const auto g = walk.pass.g();
   const Matrix3 covariance = walk.square - g.transpose() * g;
@@ -214,10 +214,11 @@ Return* Returns::append(Return&& result, const Walk& walk, int extent) {
   }
   result.mean -= result.offset;
   result.L.triangularView<Eigen::Lower>().solveInPlace(result.mean);
+  const int extent = root.extent();
   result.R.setZero(extent, 3);
   const auto rows = std::min<Eigen::Index>(extent, walk.x.rows());
   result.R.topRows(rows) = -walk.x.topRows(rows);
-  result.R.middleRows<3>(Root::row_of_slot(result.slot)).setIdentity();
+  result.R.middleRows<3>(root.row_of_slot(result.slot)).setIdentity();
   result.L.transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(result.R);
   returns_.push_back(std::move(result));
   return &returns_.back();

@@ -10,8 +10,8 @@
 
 namespace evbench::smoother {
 
-/// Three values of a landmark for each of up to 24 right-hand sides.
-using Known3 = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 24>;
+/// Three values of a landmark for each of up to 36 right-hand sides.
+using Known3 = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 36>;
 using MatrixX3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
 /// Coupling of a stage's noise with landmarks that returned later (see Returns): Zᵀ, 3 rows for each of them.
@@ -173,7 +173,7 @@ class Returns {
   /// Adds the return of a landmark with this walk, which has crossed all others, into the landmark's slot; R has
   /// `extent` rows. Returns null and does nothing if the other returns leave too little of it unknown to be
   /// distinguished from rounding.
-  Return* append(Return&& result, const Walk& walk, int extent);
+  Return* append(Return&& result, const Walk& walk, const Root& root);
 
   /// Removes and returns those before stages later than `done`, in order.
   std::vector<Return> take_after(int done);

@@ -103,7 +103,7 @@ void check_close(const Matrix& a, const Matrix& b) {
 
 void check_same_covariances(Smoother& a, Smoother& b) {
   const int newest = static_cast<int>(a.graph().states.size()) - 1;
-  const std::vector<Matrix24> chain = a.chain_covariances(1);
+  const std::vector<PairMatrix> chain = a.chain_covariances(1);
   REQUIRE(std::ssize(chain) == newest);
   for (int k = 0; k < newest; k += 7) {
     CAPTURE(k);

@@ -55,11 +55,30 @@ void Root::move(int from, int to) {
   slot_of_[index(landmark)] = to;
 }
 
-void Root::add_state(int state, const Matrix12& H, const Vector12& b) {
+void Root::follow_moves(std::span<const SlotMove> moves, double* x, int stride, int columns) const {
+  for (const auto [from, to] : moves) {
+    for (int c = 0; c < columns; ++c, x += stride) {
+      std::copy_n(x + row_of_slot(from), 3, x + row_of_slot(to));
+      std::fill_n(x + row_of_slot(from), 3, 0.0);
+    }
+    x -= columns * stride;
+  }
+}
+
+void Root::undo_moves(std::span<const SlotMove> moves, double* x, int stride, int columns) const {
+  for (auto move = moves.rbegin(); move != moves.rend(); ++move) {
+    for (int c = 0; c < columns; ++c, x += stride) {
+      std::copy_n(x + row_of_slot(move->to), 3, x + row_of_slot(move->from));
+    }
+    x -= columns * stride;
+  }
+}
+
+void Root::add_state(int state, const StateMatrix& H, const StateVector& b) {
   reserve(extent());
   const int row = row_of_state(state);
-  for (int c = 0; c < 12; ++c) {
-    for (int r = c; r < 12; ++r) column(row + c)[row + r] += H(r, c);
+  for (int c = 0; c < state_size_; ++c) {
+    for (int r = c; r < state_size_; ++r) column(row + c)[row + r] += H(r, c);
     b_[index(row + c)] += b(c);
   }
 }
@@ -75,11 +94,12 @@ void Root::add_landmark(int landmark, const Matrix3& H, const Vector3& b) {
 void Root::add_interval(int k, const IntervalLinearisation& linear) {
   reserve(extent());
   const int older = row_of_state(k - 1), newer = row_of_state(k);
-  const auto place = [&](int i) { return i < 12 ? older + i : newer + i - 12; };
-  for (int c = 0; c < 24; ++c) {
+  const auto place = [&](int i) { return i < state_size_ ? older + i : newer + i - state_size_; };
+  const int both = 2 * state_size_;
+  for (int c = 0; c < both; ++c) {
     const int at = place(c);
     b_[index(at)] -= linear.gradient(c);
-    for (int r = 0; r < 24; ++r) {
+    for (int r = 0; r < both; ++r) {
       if (place(r) >= at) column(at)[place(r)] += linear.states(r, c);
     }
   }
@@ -87,7 +107,7 @@ void Root::add_interval(int k, const IntervalLinearisation& linear) {
     const int row = row_of_slot(slot_of(coupling.landmark));
     add_landmark(coupling.landmark, coupling.landmark_landmark, -coupling.gradient);
     const double* values = coupling.landmark_states.data();
-    for (int c = 0; c < 24; ++c, values += 3) {
+    for (int c = 0; c < both; ++c, values += 3) {
       double* to = column(place(c)) + row;
       to[0] += values[0];
       to[1] += values[1];

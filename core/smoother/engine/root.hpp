@@ -34,14 +34,17 @@ struct SlotMove {
 /// The trailing dense part of the factorisation: information matrix H and right-hand side b (H δ = b) of the newest two
 /// states and of the live landmarks, after everything older has been eliminated.
 ///
-/// Layout: state k occupies 12 rows from 12 (k mod 2) on, a landmark the 3 rows of its slot. It keeps that slot until
-/// too many lower slots are free: close_holes().
+/// Layout: with states of n rows (12 or 18), state k occupies n rows from n (k mod 2) on, a landmark the 3 rows of its
+/// slot. It keeps that slot until too many lower slots are free: close_holes().
 /// Invariant: rows and columns without a variable are zero.
 class Root {
  public:
-  static int row_of_state(int state) { return 12 * (state % 2); }
-  static int row_of_slot(int slot) { return 24 + 3 * slot; }
-  static int slot_of_row(int row) { return (row - 24) / 3; }
+  explicit Root(int state_size) : state_size_(state_size) {}
+
+  int state_size() const { return state_size_; }
+  int row_of_state(int state) const { return state_size_ * (state % 2); }
+  int row_of_slot(int slot) const { return 2 * state_size_ + 3 * slot; }
+  int slot_of_row(int row) const { return (row - 2 * state_size_) / 3; }
 
   int extent() const { return padded(row_of_slot(top_)); }  ///< rows in use, padded
   int slots() const { return top_; }                        ///< slots in use, with holes
@@ -62,8 +65,11 @@ class Root {
   /// Moves landmarks from the highest slots to free ones if there are many of these: the cost grows with the square of
   /// the root's size. Returns the moves in their order.
   void close_holes(std::vector<SlotMove>& moves);
+  /// Moves the rows of moved landmarks, in right-hand sides in the root's layout, to their new slots, and back.
+  void follow_moves(std::span<const SlotMove> moves, double* x, int stride, int columns) const;
+  void undo_moves(std::span<const SlotMove> moves, double* x, int stride, int columns) const;
 
-  void add_state(int state, const Matrix12& H, const Vector12& b);
+  void add_state(int state, const StateMatrix& H, const StateVector& b);
   void add_landmark(int landmark, const Matrix3& H, const Vector3& b);
   /// An interval that ends in state k; all its landmarks are in the root.
   void add_interval(int k, const IntervalLinearisation& linear);
@@ -94,28 +100,10 @@ class Root {
   void move(int from, int to);
   void clear_occupants();
 
+  int state_size_;
   int top_ = 0, stride_ = 0;
   Buffer H_, b_;
   std::vector<int> occupant_, slot_of_;
 };
-
-/// Moves the rows of moved landmarks, in right-hand sides in the root's layout, to their new slots, and back.
-inline void follow_moves(std::span<const SlotMove> moves, double* x, int stride, int columns) {
-  for (const auto [from, to] : moves) {
-    for (int c = 0; c < columns; ++c, x += stride) {
-      std::copy_n(x + Root::row_of_slot(from), 3, x + Root::row_of_slot(to));
-      std::fill_n(x + Root::row_of_slot(from), 3, 0.0);
-    }
-    x -= columns * stride;
-  }
-}
-inline void undo_moves(std::span<const SlotMove> moves, double* x, int stride, int columns) {
-  for (auto move = moves.rbegin(); move != moves.rend(); ++move) {
-    for (int c = 0; c < columns; ++c, x += stride) {
-      std::copy_n(x + Root::row_of_slot(move->to), 3, x + Root::row_of_slot(move->from));
-    }
-    x -= columns * stride;
-  }
-}
 
 }  // namespace evbench::smoother

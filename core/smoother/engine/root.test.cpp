@@ -22,20 +22,20 @@ std::map<std::pair<int, int>, Eigen::MatrixXd> content(const Root& root) {
   std::map<std::pair<int, int>, Eigen::MatrixXd> result;
   for (int i = 0; i < kLandmarks; ++i) {
     if (root.slot_of(i) < 0) continue;
-    const int row = Root::row_of_slot(root.slot_of(i));
-    result[{i, -1}] = H.block(row, 0, 3, 24);
+    const int row = root.row_of_slot(root.slot_of(i));
+    result[{i, -1}] = H.block(row, 0, 3, 2 * root.state_size());
     result[{i, -2}] = as_vector(root.b() + row, 3);
     for (int j = 0; j < kLandmarks; ++j) {
-      if (root.slot_of(j) >= 0) result[{i, j}] = H.block(row, Root::row_of_slot(root.slot_of(j)), 3, 3);
+      if (root.slot_of(j) >= 0) result[{i, j}] = H.block(row, root.row_of_slot(root.slot_of(j)), 3, 3);
     }
   }
-  result[{-1, -1}] = H.topLeftCorner(24, 24);
+  result[{-1, -1}] = H.topLeftCorner(2 * root.state_size(), 2 * root.state_size());
   return result;
 }
 
 /// Removes a landmark as an elimination does.
 void remove(Root& root, int landmark) {
-  const int row = Root::row_of_slot(root.slot_of(landmark));
+  const int row = root.row_of_slot(root.slot_of(landmark));
   for (int i = row; i < row + 3; ++i) {
     for (int c = 0; c <= i; ++c) root.column(c)[i] = 0.0;
     for (int r = i; r < root.extent(); ++r) root.column(i)[r] = 0.0;
@@ -49,11 +49,11 @@ void remove(Root& root, int landmark) {
 TEST_CASE("Landmarks that are moved to lower slots keep their information") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Random random(seed);
-    Root root;
+    Root root(seed % 2 == 0 ? 12 : 18);
     for (int j = 0; j < kLandmarks; ++j) root.enter(j);
     Eigen::MatrixXd R(root.extent(), 8);
     for (double& value : R.reshaped()) value = random.uniform(-1.0, 1.0);
-    R.bottomRows(root.extent() - Root::row_of_slot(kLandmarks)).setZero();
+    R.bottomRows(root.extent() - root.row_of_slot(kLandmarks)).setZero();
     root.add_factor(R, Eigen::VectorXd::LinSpaced(8, -1.0, 1.0));
     int left = kLandmarks;
     for (int j = 0; j < kLandmarks; ++j) {
@@ -68,7 +68,7 @@ TEST_CASE("Landmarks that are moved to lower slots keep their information") {
     std::iota(x.begin(), x.end(), 0.0);
     for (int s = 0; s < root.slots(); ++s) {  // free slots are zero, as in the root
       if (root.occupant(s) >= 0) continue;
-      for (const int column : {0, root.stride()}) std::fill_n(x.begin() + column + Root::row_of_slot(s), 3, 0.0);
+      for (const int column : {0, root.stride()}) std::fill_n(x.begin() + column + root.row_of_slot(s), 3, 0.0);
     }
     const std::vector<double> original = x;
 
@@ -79,20 +79,20 @@ TEST_CASE("Landmarks that are moved to lower slots keep their information") {
     REQUIRE(after.size() == before.size());
     for (const auto& [key, value] : before) CHECK(after.at(key) == value);
 
-    follow_moves(moves, x.data(), root.stride(), 2);
+    root.follow_moves(moves, x.data(), root.stride(), 2);
     for (int j = 0; j < kLandmarks; ++j) {
       if (slot[j] < 0) continue;
       for (const int column : {0, root.stride()}) {
         for (int i = 0; i < 3; ++i) {
-          CHECK(x[static_cast<std::size_t>(column + Root::row_of_slot(root.slot_of(j)) + i)] ==
-                original[static_cast<std::size_t>(column + Root::row_of_slot(slot[j]) + i)]);
+          CHECK(x[static_cast<std::size_t>(column + root.row_of_slot(root.slot_of(j)) + i)] ==
+                original[static_cast<std::size_t>(column + root.row_of_slot(slot[j]) + i)]);
         }
       }
     }
-    undo_moves(moves, x.data(), root.stride(), 2);
+    root.undo_moves(moves, x.data(), root.stride(), 2);
     for (int j = 0; j < kLandmarks; ++j) {
       if (slot[j] < 0) continue;
-      const auto at = static_cast<std::size_t>(Root::row_of_slot(slot[j]));
+      const auto at = static_cast<std::size_t>(root.row_of_slot(slot[j]));
       CHECK(std::equal(x.begin() + static_cast<long>(at), x.begin() + static_cast<long>(at) + 3,
                        original.begin() + static_cast<long>(at)));
     }

@@ -8,7 +8,7 @@
 namespace evbench::smoother {
 
 /// The Cholesky factor of the root, H = L Lᵀ. Its rows have another order than the root's: landmarks by slot, 3 rows
-/// each (a unit diagonal for a free slot), then one or two states, 12 rows each, then padding. So the last rows are the
+/// each (a unit diagonal for a free slot), then one or two states, then padding. So the last rows are the
 /// factor of the newest states after elimination of the landmarks.
 class RootFactor {
  public:
@@ -19,7 +19,7 @@ class RootFactor {
   int row_of_states() const { return 3 * slots_; }
   /// The row here of a row of the root's landmarks or of state `oldest`.
   int row_of_root_row(int row) const {
-    const int in_slots = row - Root::row_of_slot(0);
+    const int in_slots = row - slots_in_root_;
     return in_slots >= 0 ? in_slots : row_of_states() + row - state_in_root_;
   }
   int size() const { return size_; }  ///< rows, padded; each column has room for kPadding more
@@ -46,7 +46,8 @@ class RootFactor {
   void copy_to_root(const double* x, double* root) const;
 
  private:
-  int slots_ = 0, size_ = 0, state_in_root_ = 0;
+  int slots_ = 0, size_ = 0, state_size_ = 0;
+  int state_in_root_ = 0, slots_in_root_ = 0;  ///< rows in the root
   Buffer L_, b_;
 };
 

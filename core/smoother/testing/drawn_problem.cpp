@@ -47,24 +47,40 @@ Vector6 DrawnProblem::normal6(double sigma) {
   return v;
 }
 
-/// In each interval the local variable (ξ, ξ') of the prior is a Gauss-Markov chain from (0, ϖ_{k−1}).
+/// In each interval the local variable (ξ, ξ', ξ'') of the prior is a Gauss-Markov chain from (0, ϖ_{k−1}, ϖ'_{k−1}).
+/// Back in the body frame ϖ' is J_r(ξ) (ξ'' − ∂(J_r(ξ)⁻¹ϖ)/∂ξ ξ'), with what GpInterval calls c_1 for ξ''.
 void DrawnProblem::draw_trajectory() {
-  const Matrix12 phi = wnoa::transition(kStep);
-  const Matrix12 root = wnoa::process_covariance(kStep, qc_).llt().matrixL();
+  const MotionPrior& prior = options_.motion_prior;
+  const int orders = prior.orders();
+  Eigen::MatrixXd phi(orders, orders), root(orders, orders);
+  if (prior.has_acceleration()) {
+    phi = singer::transition(kStep, prior.rate);
+    root = singer::process_covariance(kStep, prior.rate).llt().matrixL();
+  } else {
+    const Matrix12 Q = wnoa::process_covariance(kStep, Vector6::Ones());
+    phi << 1.0, kStep, 0.0, 1.0;
+    root = Matrix2((Matrix2() << Q(0, 0), Q(0, 6), Q(6, 0), Q(6, 6)).finished()).llt().matrixL();
+  }
   ControlState start;
   start.T = pose_prior_.T * se3::exp(normal6(pose_prior_.sigma[0]));
   start.velocity = velocity_prior_.velocity + normal6(velocity_prior_.sigma[0]);
+  if (prior.has_acceleration()) start.acceleration = normal6(std::sqrt(0.5 * prior.rate * options_.qc));
   truth_.push_back(start);
   for (int k = 1; k < kStates; ++k) {
-    Vector12 local = Vector12::Zero();
-    local.tail<6>() = start.velocity;
+    Eigen::Matrix<double, 6, Eigen::Dynamic> local = Eigen::MatrixXd::Zero(6, orders), noise = local;
+    local.col(1) = start.velocity;
+    if (prior.has_acceleration()) local.col(2) = start.acceleration;
     for (int step = 0; step < kSteps; ++step) {
-      Vector12 noise;
-      noise << normal6(1.0), normal6(1.0);
-      local = phi * local + root * noise;
-      const Vector6 xi = local.head<6>();
-      const double t = kStep * static_cast<double>(truth_.size());
-      truth_.push_back({t, start.T * se3::exp(xi), se3::right_jacobian(xi) * local.tail<6>()});
+      for (int order = 0; order < orders; ++order) noise.col(order) = normal6(std::sqrt(options_.qc));
+      local = (local * phi.transpose() + noise * root.transpose()).eval();
+      const Vector6 xi = local.col(0);
+      ControlState state{kStep * static_cast<double>(truth_.size()), start.T * se3::exp(xi),
+                         se3::right_jacobian(xi) * local.col(1)};
+      if (prior.has_acceleration()) {
+        state.acceleration =
+            se3::right_jacobian(xi) * (local.col(2) - se3::d_right_jacobian_inverse(xi, state.velocity) * local.col(1));
+      }
+      truth_.push_back(state);
     }
     start = truth_.back();
   }
@@ -87,7 +103,7 @@ void DrawnProblem::draw_landmark(int first, int last) {
   const int step = at_states ? kSteps : 1 + static_cast<int>(landmarks_.size()) % kSteps;
   for (int k = first; k <= std::min(last, kStates - 1); ++k) {
     const double t = truth((k - 1) * kSteps + step).t;
-    const SE3 T = GpInterval(truth((k - 1) * kSteps), truth(k * kSteps)).pose(t);
+    const SE3 T = GpInterval(truth((k - 1) * kSteps), truth(k * kSteps), options_.motion_prior).pose(t);
     const Vector2 seen = camera().project(T.inverse() * landmark.position);
     if (seen.x() < 0.0 || seen.y() < 0.0 || seen.x() > kWidth || seen.y() > kHeight) break;
     const double sigma = options_.noise_scale * options_.pixel_sigma;
@@ -124,7 +140,7 @@ void DrawnProblem::draw_anchor() {
 }
 
 Smoother DrawnProblem::solve_incrementally(const SmootherOptions& engine_options) const {
-  Smoother engine(camera(), qc_, RobustLoss(), engine_options);
+  Smoother engine(camera(), qc_, RobustLoss(), engine_options, options_.motion_prior);
   for (const Landmark& landmark : landmarks_) engine.add_landmark(landmark.guess, landmark.prior);
   engine.add_state({0.0, pose_prior_.T, velocity_prior_.velocity});
   engine.add_pose_prior(pose_prior_);
@@ -132,7 +148,7 @@ Smoother DrawnProblem::solve_incrementally(const SmootherOptions& engine_options
   if (!anchors_.empty()) engine.anchor_scale(pose_prior_.T.p, anchors_);
   engine.update();
   for (int k = 1; k < kStates; ++k) {
-    engine.add_state(extrapolate(engine.graph().states.back(), truth(k * kSteps).t - engine.graph().states.back().t));
+    engine.add_state_at(truth(k * kSteps).t);
     for (std::size_t j = 0; j < landmarks_.size(); ++j) {
       const auto& all = landmarks_[j].observations;
       const int newest = k - landmarks_[j].first;

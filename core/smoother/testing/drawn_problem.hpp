@@ -20,6 +20,7 @@ struct DrawnOptions {
   };
   Gauge gauge = Gauge::landmark_priors;
   Observed observed = Observed::between_states;
+  MotionPrior motion_prior = {};
   double qc = 0.01;          ///< [rad²/s³, m²/s³]
   double pixel_sigma = 0.1;  ///< stated [px]
   double noise_scale = 1.0;  ///< true pixel noise over the stated one

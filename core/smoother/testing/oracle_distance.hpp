@@ -28,17 +28,19 @@ inline OracleDistance distance_from_oracle(const FactorGraph& estimate, int ever
   const BatchCovariance covariance(optimum);
   OracleDistance distance;
   const int newest = static_cast<int>(optimum.states.size()) - 1;
-  Matrix12 own = Matrix12::Identity();
+  const int n = optimum.state_size();
+  StateMatrix own = StateMatrix::Identity(n, n);
   for (int k = 0; k <= newest; ++k) {
     if (k % every == 0) {
       const auto joint = covariance.neighbours(std::min(k, newest - 1));
       if (!joint) return {kInfinite, kInfinite};
-      own = k < newest ? joint->topLeftCorner<12, 12>() : joint->bottomRightCorner<12, 12>();
+      own = k < newest ? joint->topLeftCorner(n, n) : joint->bottomRightCorner(n, n);
     }
     const ControlState& a = optimum.states[index(k)];
     const ControlState& b = estimate.states[index(k)];
-    Vector12 apart;
-    apart << se3::log(a.T.inverse() * b.T), b.velocity - a.velocity;
+    StateVector apart(n);
+    apart.head<12>() << se3::log(a.T.inverse() * b.T), b.velocity - a.velocity;
+    if (n == 18) apart.tail<6>() = b.acceleration - a.acceleration;
     distance.component =
         std::max(distance.component, apart.cwiseAbs().cwiseQuotient(own.diagonal().cwiseSqrt()).maxCoeff());
     distance.whitened = std::max(distance.whitened, own.llt().matrixL().solve(apart).norm());

@@ -52,7 +52,7 @@ RandomSession::RandomSession(std::uint64_t seed, const SessionOptions& options)
     : random_(seed),
       options_(options),
       engine_(kCamera, Vector6::Constant(0.2), chance(0.3) ? RobustLoss(RobustLoss::Kind::cauchy, 2.0) : RobustLoss(),
-              options.engine) {
+              options.engine, options.motion_prior) {
   if (options.full_twin) {
     SmootherOptions full = options.engine;
     full.lag = 0.0;

@@ -14,6 +14,7 @@ SmootherOptions linear_options();
 
 struct SessionOptions {
   SmootherOptions engine;
+  MotionPrior motion_prior = {};
   bool anchor = true;       ///< the scale anchor is set and loses landmarks
   bool full_twin = false;   ///< a second engine with full history gets everything that the first one accepted
   bool covariances = true;  ///< are queried in between

@@ -19,7 +19,7 @@ struct DenseSystem {
   Vector b;
 
   explicit DenseSystem(const FactorGraph& graph) {
-    int size = 12 * static_cast<int>(graph.states.size());
+    int size = graph.state_size() * static_cast<int>(graph.states.size());
     std::vector<int> row(graph.landmarks.size(), -1);
     for (std::size_t j = 0; j < row.size(); ++j) {
       if (graph.landmarks[j].intervals.empty()) continue;
@@ -45,20 +45,19 @@ struct DenseSystem {
   }
 
   void add_state(const FactorGraph& graph, int k, const std::vector<int>& row) {
-    Matrix12 priors = Matrix12::Zero();
-    Vector12 g = Vector12::Zero();
-    add_state_priors(graph, k, priors, g);
-    add(12 * k, 12 * k, priors);
-    b.segment(12 * k, 12) -= g.cast<Real>();
+    const int n = graph.state_size();
+    const StateSystem priors = state_priors(graph, k);
+    add(n * k, n * k, priors.H);
+    b.segment(n * k, n) -= priors.g.cast<Real>();
     if (k == 0) return;
     IntervalLinearisation linear;
     linearise_interval(graph, k, linear);
-    add(12 * (k - 1), 12 * (k - 1), linear.states);
-    b.segment(12 * (k - 1), 24) -= linear.gradient.cast<Real>();
+    add(n * (k - 1), n * (k - 1), linear.states);
+    b.segment(n * (k - 1), 2 * n) -= linear.gradient.cast<Real>();
     for (const auto& coupling : linear.couplings) {
       const int l = row[index(coupling.landmark)];
       add(l, l, coupling.landmark_landmark);
-      add(l, 12 * (k - 1), coupling.landmark_states);
+      add(l, n * (k - 1), coupling.landmark_states);
       b.segment(l, 3) -= coupling.gradient.cast<Real>();
     }
   }
@@ -81,7 +80,8 @@ std::vector<RoundingBound> rounding_bounds(const FactorGraph& graph) {
   const Eigen::VectorXd delta = inverse_D.cwiseProduct(scaled).cast<double>();
   const Eigen::VectorXd sigma = inverse_K.diagonal().cwiseSqrt().cwiseProduct(inverse_D).cast<double>();
   std::vector<RoundingBound> bounds;
-  for (int i = 0; i < 12 * static_cast<int>(graph.states.size()); i += 12) {
+  for (int k = 0; k < static_cast<int>(graph.states.size()); ++k) {
+    const int i = k * graph.state_size();
     const double turned = delta.segment<3>(i + 3).norm() * sigma.segment<3>(i).norm();  // δT = Exp(φ, ρ)
     bounds.push_back({share * (sigma.segment<3>(i + 3).norm() + turned), share * sigma.segment<6>(i + 6).norm()});
   }
