@@ -59,7 +59,7 @@ TEST_CASE("A prior that is too strong is relaxed for aggressive motion", "[long]
                                 "tracks": {"lifetime": [0.3, 1.0]}})"}) {
     std::vector<double> errors;  // one seed may have few good tracks
     for (const std::uint64_t seed : {1, 2, 3}) {
-      const auto result = run(TrackedScene(4.0, scene, seed), {.backend = R"({"qc_scale": 0.1})"});
+      const auto result = run(TrackedScene(4.0, scene, seed), {.backend = R"({"qc_scale": 0.1, "relaxation": {"most": 1000}})"});
       INFO("seed " << seed << ": " << result.backend->status().reason << " " << result.scores.ate.trans_percent);
       CHECK(result.backend->status().state == RunState::ok);
       errors.push_back(result.scores.ate.trans_percent);

@@ -25,7 +25,8 @@ struct SmootherOptions {
   /// `relinearise` for variables in stages that are redone anyway: only their intervals have to be linearised again.
   double relinearise_redone = 0.0015;
   /// Back-substitution stops where the separator of a stage changes by less than this over √n with n landmarks in the
-  /// root [rad, as above]: n landmarks together determine a variable √n times better than one.
+  /// root [rad, as above]: n landmarks together determine a variable √n times better than one. With Singer's prior a
+  /// quarter of it.
   double solve_tolerance = 3.8e-3;
   /// An update that changes a variable by more than this [rad] must not raise the cost of the affected intervals.
   double check_step = 0.02;

@@ -82,7 +82,9 @@ void Engine::solve_back(UpdateSummary& summary) {
     ++landmarks;
   }
   clear_returns(newest + 1);
-  const double tolerance = options_.solve_tolerance / std::sqrt(std::max(1, landmarks));
+  // Small changes of poses change accelerations, and velocities between states, by much of their standard deviations.
+  const double share = graph_.motion_prior.has_acceleration() ? 0.25 : 1.0;
+  const double tolerance = share * options_.solve_tolerance / std::sqrt(std::max(1, landmarks));
   for (int k = newest; k > std::max(0, factorisation_.base()); --k) {
     Factorisation::Stage& stage = factorisation_.stage(k);
     stage.skipped += separator_change(k) + tolerance / kNoiseTolerance * factorisation_.change_by_returns();

@@ -130,9 +130,8 @@ TEST_CASE("Errors of control states match their covariances where each landmark 
 }
 
 TEST_CASE("Errors match their covariances with Singer's prior, at and between control states", "[slow]") {
-  check_consistency({.motion_prior = {20.0}, .qc = 0.05}, control_states());
-  check_consistency({.observed = DrawnOptions::Observed::at_states, .motion_prior = {20.0}, .qc = 0.05},
-                    between_states());
+  check_consistency({.motion_prior = {20.0}}, control_states());
+  check_consistency({.observed = DrawnOptions::Observed::at_states, .motion_prior = {20.0}}, between_states());
 }
 
 TEST_CASE("Errors between control states match their covariances", "[slow]") {
@@ -159,7 +158,7 @@ TEST_CASE("After its final iterations the engine's trajectory equals the oracle'
       CHECK(testing::distance_from_oracle(engine.graph()).component < 0.01);
     }
   }
-  Smoother engine = DrawnProblem({.motion_prior = {20.0}, .qc = 0.05}, kFirstSeed).solve_incrementally();
+  Smoother engine = DrawnProblem({.motion_prior = {20.0}}, kFirstSeed).solve_incrementally();
   engine.optimise(30, 1e-9);
   CHECK(testing::distance_from_oracle(engine.graph()).component < 0.01);
 }
