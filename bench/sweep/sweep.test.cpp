@@ -363,6 +363,6 @@ TEST_CASE("The sweeps that come with evbench can be planned", "[slow]") {
   sweep["config"] = EVBENCH_SOURCE "/configs/paper/table1_simulated.json";
   folder.write("batching.json", dump_json(sweep));
   const SweepPlan made = plan(folder, "batching.json");
-  CHECK(made.runs.size() == 3 * 10 * (1 + 8 + 8 + 1));  // gp_map, both kinds of frames by duration, adaptive ones
+  CHECK(made.runs.size() == 3 * 10 * (1 + 6 + 6 + 1));  // gp_map, batches by duration and by count, adaptive ones
   CHECK(made.axes.size() == 5);
 }

@@ -78,8 +78,12 @@ def run_experiment(program, experiment, folder, jobs):
     try:
         for command in commands(experiment):
             print(f"== {experiment['name']}: {command}", flush=True)
-            words = [*shlex.split(command)[1:], *(["-j", str(jobs)] if jobs else [])]
-            result = subprocess.run([program, *map(os.path.expandvars, words)], cwd=ROOT)
+            words = [os.path.expandvars(word) for word in shlex.split(command)]
+            if words[0] == "evbench":
+                words[0] = program
+            if words[1] == "sweep" and jobs:
+                words += ["-j", str(jobs)]
+            result = subprocess.run(words, cwd=ROOT)
             if result.returncode not in (0, 3):  # 3: runs failed, which the tables show
                 raise SystemExit(f"{experiment['name']}: {command} ended with {result.returncode}")
     finally:
