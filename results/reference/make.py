@@ -116,7 +116,7 @@ def manifest(name, folder, seconds):
 def write_csv(program, folder, path):
     """A row per run, without columns that name folders or times of this machine."""
     table = output(program, f"evbench table {folder} --format csv --all")
-    rows = list(csv.DictReader(table.splitlines()))
+    rows = [row for row in csv.DictReader(table.splitlines()) if row["status"] != "not run"]
     left_out = {"folder", "reason", "protocol"} | {key for key in rows[0] if key.startswith("times.")}
     with path.open("w", newline="") as file:
         writer = csv.DictWriter(file, [key for key in rows[0] if key not in left_out], extrasaction="ignore",
