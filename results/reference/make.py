@@ -74,6 +74,7 @@ def processor_time():
 def run_experiment(program, experiment, folder, jobs):
     """Runs what is not complete, and returns the processor time of all calls."""
     record = folder / "processor_s.txt"
+    before = float(record.read_text()) if record.exists() else 0
     begin = processor_time()
     try:
         for command in commands(experiment):
@@ -87,7 +88,7 @@ def run_experiment(program, experiment, folder, jobs):
             if result.returncode not in (0, 3):  # 3: runs failed, which the tables show
                 raise SystemExit(f"{experiment['name']}: {command} ended with {result.returncode}")
     finally:
-        spent = (float(record.read_text()) if record.exists() else 0) + processor_time() - begin
+        spent = before + processor_time() - begin
         if folder.exists():
             record.write_text(f"{spent:.1f}\n")
     return spent
