@@ -4,13 +4,18 @@
     results/reference/make.py [--evbench PROGRAM] [NAME...]   runs the experiments (results/reference/experiments.json)
                                                               and writes their tables, CSV and manifests; what is
                                                               complete below results/ is not run again, so that an
-                                                              interrupted call can be continued
-    results/reference/make.py --list                          the experiments, with the time that each took
+                                                              interrupted call can be continued; -j N: runs at a time;
+                                                              --run: leaves the pages as they are
+    results/reference/make.py --list                          the experiments, with the processor time that each took
     results/reference/make.py --check [--evbench PROGRAM]     fails where a committed table was changed by hand, or was
                                                               made with other versions of plugins than the program has
 
-A page has a table between <!-- made by: evbench table ... --> and <!-- end -->, without its notes where the command ends
-with "; without notes". <!-- made by: evbench figure ... --> makes a picture.
+An experiment is a name, the commands that run it into results/NAME, and the pages with its tables. A page has a table
+between <!-- made by: evbench table ... --> (or evbench compare) and <!-- end -->, without its notes where the command ends
+with "; without notes". <!-- made by: evbench figure ... --> makes a picture. A page may have tables of several
+experiments: a table belongs to those whose results/NAME is in its command.
+
+EVBENCH_EVENTS is the folder of simulated events that several experiments share; by default results/events.
 """
 
 import argparse
@@ -20,19 +25,24 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shlex
 import subprocess
 import sys
-import time
 
 REFERENCE = pathlib.Path(__file__).resolve().parent
 ROOT = REFERENCE.parent.parent
-BLOCK = re.compile(r"(<!-- made by: (evbench table [^\n]*?)(; without notes)? -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- made by: (evbench (?:table|compare) [^\n]*?)(; without notes)? -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 FIGURE = re.compile(r"<!-- made by: (evbench figure .*?) -->")
 
 
 def experiments():
     return json.loads((REFERENCE / "experiments.json").read_text())
+
+
+def commands(experiment):
+    command = experiment["command"]
+    return [command] if isinstance(command, str) else command
 
 
 def run(program, command, **more):
@@ -56,6 +66,34 @@ def versions_of(job):
         yield f'{part} {job[part]["type"]}', job[part]["version"]
 
 
+def processor_time():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def run_experiment(program, experiment, folder, jobs):
+    """Runs what is not complete, and returns the processor time of all calls."""
+    record = folder / "processor_s.txt"
+    before = float(record.read_text()) if record.exists() else 0
+    begin = processor_time()
+    try:
+        for command in commands(experiment):
+            print(f"== {experiment['name']}: {command}", flush=True)
+            words = [os.path.expandvars(word) for word in shlex.split(command)]
+            if words[0] == "evbench":
+                words[0] = program
+            if words[1] == "sweep" and jobs:
+                words += ["-j", str(jobs)]
+            result = subprocess.run(words, cwd=ROOT)
+            if result.returncode not in (0, 3):  # 3: runs failed, which the tables show
+                raise SystemExit(f"{experiment['name']}: {command} ended with {result.returncode}")
+    finally:
+        spent = before + processor_time() - begin
+        if folder.exists():
+            record.write_text(f"{spent:.1f}\n")
+    return spent
+
+
 def manifest(name, folder, seconds):
     plugins, commits, hosts, seeds, versions, days = {}, set(), set(), set(), set(), set()
     count = 0
@@ -73,13 +111,13 @@ def manifest(name, folder, seconds):
         raise SystemExit(f"{name}: runs of several versions are in {folder}: {mixed}; expected one of each: remove the older")
     return {"experiment": name, "runs": count, "program": sorted(versions), "commits": sorted(commits),
             "plugins": {plugin: known.pop() for plugin, known in sorted(plugins.items())}, "seeds": sorted(seeds),
-            "hosts": sorted(hosts), "days": sorted(days), "seconds": round(seconds)}
+            "hosts": sorted(hosts), "days": sorted(days), "processor_s": round(seconds)}
 
 
 def write_csv(program, folder, path):
     """A row per run, without columns that name folders or times of this machine."""
     table = output(program, f"evbench table {folder} --format csv --all")
-    rows = list(csv.DictReader(table.splitlines()))
+    rows = [row for row in csv.DictReader(table.splitlines()) if row["status"] != "not run"]
     left_out = {"folder", "reason", "protocol"} | {key for key in rows[0] if key.startswith("times.")}
     with path.open("w", newline="") as file:
         writer = csv.DictWriter(file, [key for key in rows[0] if key not in left_out], extrasaction="ignore",
@@ -92,26 +130,34 @@ def digest(text):
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def fill(program, page):
-    """Writes the tables and pictures of a page, and returns the digests of its tables."""
+def belongs_to(name, command):
+    return f"results/{name}" in command.split()
+
+
+def fill(program, page, name):
+    """Writes the tables and pictures of an experiment in a page, and returns the digests of its tables."""
     text = page.read_text()
     for command in FIGURE.findall(text):
-        run(program, command)
+        if belongs_to(name, command):
+            run(program, command)
 
     def made(block):
+        if not belongs_to(name, block[2]):
+            return block[0]
         table = output(program, block[2])
         return block[1] + "\n" + (table.split("\n\n")[0] if block[3] else table).rstrip() + "\n\n" + block[5]
 
     text = BLOCK.sub(made, text)
     page.write_text(text)
-    return digests(text)
+    return digests(text, name)
 
 
-def digests(text):
-    return [digest(block[3]) for block in BLOCK.findall(text)]
+def digests(text, name):
+    return [digest(block[3]) for block in BLOCK.findall(text) if belongs_to(name, block[1])]
 
 
-def make(program, names):
+def make(program, names, jobs, only_run):
+    os.environ.setdefault("EVBENCH_EVENTS", str(ROOT / "results" / "events"))
     for experiment in experiments():
         name = experiment["name"]
         if names and name not in names:
@@ -120,19 +166,15 @@ def make(program, names):
         if missing:
             print(f"{name}: left out: {', '.join(missing)} is not set")
             continue
-        print(f"== {name}: {experiment['command']}", flush=True)
-        begin = time.monotonic()
-        result = subprocess.run([program, *map(os.path.expandvars, shlex.split(experiment["command"])[1:])], cwd=ROOT)
-        if result.returncode not in (0, 3):  # 3: runs failed, which the tables show
-            raise SystemExit(f"{name}: {experiment['command']} ended with {result.returncode}")
-        folder = ROOT / "results" / experiment.get("folder", name)
-        record = REFERENCE / f"{name}.manifest.json"
-        before = json.loads(record.read_text()).get("seconds", 0) if record.exists() else 0
-        made = manifest(name, folder, max(before, time.monotonic() - begin))
+        folder = ROOT / "results" / name
+        spent = run_experiment(program, experiment, folder, jobs)
+        if only_run:
+            continue
+        made = manifest(name, folder, spent)
         write_csv(program, folder.relative_to(ROOT), REFERENCE / f"{name}.csv")
         made["csv"] = digest((REFERENCE / f"{name}.csv").read_text())
-        made["tables"] = {page: fill(program, ROOT / page) for page in experiment["pages"]}
-        record.write_text(json.dumps(made, indent=1) + "\n")
+        made["tables"] = {page: fill(program, ROOT / page, name) for page in experiment["pages"]}
+        (REFERENCE / f"{name}.manifest.json").write_text(json.dumps(made, indent=1) + "\n")
 
 
 def present_versions(program):
@@ -148,26 +190,26 @@ def present_versions(program):
 def check(program):
     faults = []
     now = present_versions(program)
-    tables = {}
+    pages = set()
     for experiment in experiments():
         record = REFERENCE / f"{experiment['name']}.manifest.json"
         if not record.exists():
             faults.append(f"{experiment['name']}: was never made; results/reference/make.py {experiment['name']}")
             continue
         made = json.loads(record.read_text())
-        tables.update(made["tables"])
+        for page, known in made["tables"].items():
+            pages.add(page)
+            if digests((ROOT / page).read_text(), experiment["name"]) != known:
+                faults.append(f"{page}: a table of {experiment['name']} is not as it was made")
         for plugin, version in made["plugins"].items():
             if now.get(plugin) != version:
                 faults.append(f"{experiment['name']}: was made with {plugin} {version}, the program has "
                               f"{now.get(plugin, 'none')}; results/reference/make.py {experiment['name']}")
         if digest((REFERENCE / f"{experiment['name']}.csv").read_text()) != made["csv"]:
             faults.append(f"{experiment['name']}.csv is not as it was made")
-    for page, known in tables.items():
-        if digests((ROOT / page).read_text()) != known:
-            faults.append(f"{page}: a table is not as it was made")
     for fault in faults:
         print(fault)
-    print(f"{len(tables)} pages of reference results, {len(faults)} faults")
+    print(f"{len(pages)} pages of reference results, {len(faults)} faults")
     return 1 if faults else 0
 
 
@@ -176,13 +218,16 @@ def main():
     parser.add_argument("--evbench", default=str(ROOT / "build/release/bin/evbench"))
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--list", action="store_true")
+    parser.add_argument("--run", action="store_true")
+    parser.add_argument("-j", "--jobs", type=int)
     parser.add_argument("names", nargs="*")
     arguments = parser.parse_args()
     if arguments.list:
         for experiment in experiments():
             record = REFERENCE / f"{experiment['name']}.manifest.json"
-            seconds = json.loads(record.read_text()).get("seconds") if record.exists() else None
-            print(f"{experiment['name']:<28} {f'{seconds} s' if seconds else 'never made':<12} {experiment['command']}")
+            known = json.loads(record.read_text()).get("processor_s", "?") if record.exists() else None
+            spent = f"{known} s" if known else "never made"
+            print(f"{experiment['name']:<28} {spent:<12} {'; '.join(commands(experiment))}")
         return 0
     program = str(pathlib.Path(arguments.evbench).resolve())
     if arguments.check:
@@ -190,7 +235,7 @@ def main():
     unknown = set(arguments.names) - {experiment["name"] for experiment in experiments()}
     if unknown:
         parser.error(f"there is no experiment {', '.join(sorted(unknown))}; see --list")
-    make(program, arguments.names)
+    make(program, arguments.names, arguments.jobs, arguments.run)
     return 0
 
 
