@@ -45,6 +45,21 @@ TEST_CASE("gp_map is registered and follows a simulated camera", "[slow]") {
   CHECK(result.causal.size() > 80);
 }
 
+TEST_CASE("With Singer's prior gp_map is as accurate, also with a lag and for each observation", "[slow]") {
+  const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
+  const double wnoa = run(scene).scores.ate.trans_percent;
+  for (const char* options : {R"({"prior": "singer"})", R"({"prior": "singer", "prior_rate": 1e4})",
+                              R"({"prior": "singer", "per_observation": true})", R"({"prior": "singer", "lag": 2})"}) {
+    INFO(options);
+    const auto result = run(scene, {.backend = options});
+    CHECK(result.backend->status().state == RunState::ok);
+    CHECK(result.scores.ate.trans_percent < 1.5 * wnoa);
+    CHECK(result.scores.coverage > 0.97);
+  }
+  const double fast = run(scene, {.backend = R"({"prior": "singer", "prior_rate": 1e4})"}).scores.ate.trans_percent;
+  CHECK(fast == Approx(wnoa).epsilon(0.2));  // its limit is WNOA
+}
+
 TEST_CASE("gp_map drops outlier tracks", "[long]") {
   const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [1.0, 3.0], "outlier_share": 0.1, "drift_share": 0.05}})");
   const auto result = run(scene);
@@ -59,7 +74,8 @@ TEST_CASE("A prior that is too strong is relaxed for aggressive motion", "[long]
                                 "tracks": {"lifetime": [0.3, 1.0]}})"}) {
     std::vector<double> errors;  // one seed may have few good tracks
     for (const std::uint64_t seed : {1, 2, 3}) {
-      const auto result = run(TrackedScene(4.0, scene, seed), {.backend = R"({"qc_scale": 0.1, "relaxation": {"most": 1000}})"});
+      const auto result =
+          run(TrackedScene(4.0, scene, seed), {.backend = R"({"qc_scale": 0.1, "relaxation": {"most": 1000}})"});
       INFO("seed " << seed << ": " << result.backend->status().reason << " " << result.scores.ate.trans_percent);
       CHECK(result.backend->status().state == RunState::ok);
       errors.push_back(result.scores.ate.trans_percent);

@@ -13,7 +13,7 @@
 
 /// Version of the plugin API. Raised with every incompatible change of the headers that plugins include (core/plugin/
 /// and its includes): a virtual function, a member, a changed meaning.
-#define EVBENCH_PLUGIN_API 12
+#define EVBENCH_PLUGIN_API 13
 
 // Hash of the headers that plugins include, with which this is compiled. The build of evbench and evbench_add_plugin()
 // set it, so that a changed header is noticed even if the version is forgotten.
