@@ -117,7 +117,7 @@ def table(runs, ates):
 
 
 def payload(title, sequences, runs, tables, figures=()):
-    return {"format": "evbench.report", "version": 1, "title": title, "created": "2026-11-29T05:37:50Z", "program": "evbench 0.1.0 (invented)",
+    return {"format": "evbench.report", "version": 1, "title": title, "created": "2026-11-29T05:37:50Z", "program": "evbench 1.0.0 (invented)",
             "command": "generate.py", "about": [fact("description", "invented runs for tests of the page")],
             "protocol": ["Sim(3) alignment on all poses; interpolated ground truth within 0.01 s."], "remarks": [],
             "tables": tables, "figures": list(figures), "sequences": sequences, "runs": runs}
