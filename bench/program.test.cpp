@@ -38,7 +38,7 @@ TEST_CASE("Every command has help, and the program a version", "[slow]") {
     CHECK_THAT(help.out, ContainsSubstring("Usage:"));
     CHECK(help.err.empty());
   }
-  CHECK_THAT(testing::evbench(folder, "--version").out, ContainsSubstring("evbench 0."));
+  CHECK_THAT(testing::evbench(folder, "--version").out, ContainsSubstring("evbench 1."));
   CHECK_THAT(testing::evbench(folder, "run --help").out,
              ContainsSubstring("--set") && ContainsSubstring("metrics.json"));
 }

@@ -34,7 +34,7 @@ struct HealthOptions {
 struct Options {
   PlacementOptions placement;
   PriorKind prior = PriorKind::wnoa;
-  double prior_rate = 20.0;
+  double prior_rate = 40.0;
   std::vector<double> qc = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
   double qc_scale = 1.0;
   RobustLoss::Kind loss = RobustLoss::Kind::cauchy;
