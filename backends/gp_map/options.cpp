@@ -13,7 +13,7 @@ void Options::declare(OptionSet& set) {
   set.group("placement", placement, "control states");
   set.add("prior", prior, {"wnoa", "singer"},
           "motion prior: wnoa, white noise on acceleration; singer: the same noise smoothed over 1/prior_rate, with "
-          "accelerations as unknowns, better in violent motion at twice the time");
+          "accelerations as unknowns: better where states are sparse for the motion, at 1.5 times the time");
   set.add("prior_rate", prior_rate, "how fast accelerations fade with the prior singer [1/s]").range(0.1, 1e4);
   set.add("qc", qc,
           "diagonal of the prior's power spectral density: rotation x y z [rad^2/s^3], translation x y z "
