@@ -13,14 +13,19 @@ ControlState ControlState::retract(const StateVector& delta) const {
   return result;
 }
 
+double motion_per_acceleration(double dt, const MotionPrior& prior) {
+  if (!prior.has_acceleration() || dt <= 0.0) return 0.0;
+  return singer::transition(dt, singer::rate_within(prior.rate, dt))(0, 2);
+}
+
 Vector6 expected_motion(const ControlState& state, double dt, const MotionPrior& prior) {
   Vector6 xi = dt * state.velocity;
-  if (prior.has_acceleration() && dt > 0.0) xi += singer::transition(dt, prior.rate)(0, 2) * state.acceleration;
+  if (prior.has_acceleration()) xi += motion_per_acceleration(dt, prior) * state.acceleration;
   return xi;
 }
 
 double motion_variance(double dt, const MotionPrior& prior) {
-  if (prior.has_acceleration()) return singer::process_covariance(dt, prior.rate)(0, 0);
+  if (prior.has_acceleration()) return singer::process_covariance(dt, singer::rate_within(prior.rate, dt))(0, 0);
   return wnoa::process_covariance(dt, Vector6::Ones())(0, 0);
 }
 
@@ -28,7 +33,7 @@ ControlState extrapolate(const ControlState& state, double dt, const MotionPrior
   const Vector6 xi = expected_motion(state, dt, prior);
   ControlState result{state.t + dt, state.T * se3::exp(xi), state.velocity, state.acceleration};
   if (!prior.has_acceleration() || dt <= 0.0) return result;
-  const Matrix3 phi = singer::transition(dt, prior.rate);
+  const Matrix3 phi = singer::transition(dt, singer::rate_within(prior.rate, dt));
   result.velocity = se3::right_jacobian(xi) * (state.velocity + phi(1, 2) * state.acceleration);
   result.acceleration *= phi(2, 2);
   return result;

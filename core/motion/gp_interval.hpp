@@ -12,7 +12,8 @@ using StateMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen:
 /// Of two neighbouring control states: 24 or 36 rows.
 using PairMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 36, 36>;
 
-/// Pose and body velocity at a time: the state variable of a continuous-time trajectory.
+/// Pose, body velocity and, with Singer's prior, acceleration at a time: the state variable of a continuous-time
+/// trajectory.
 struct ControlState {
   double t = 0.0;                          ///< [s]
   SE3 T;                                   ///< T_world_camera
@@ -26,9 +27,11 @@ struct ControlState {
 
 /// Log of the expected motion over dt [s]: dt ϖ, with Singer's prior and dt > 0 also that of the fading acceleration.
 Vector6 expected_motion(const ControlState& state, double dt, const MotionPrior& prior = {});
-/// Variance of that motion by the prior alone, for Qc = 1 [s³].
+/// ∂(that motion)/∂ϖ' [s²]; zero for WNOA and dt < 0.
+double motion_per_acceleration(double dt, const MotionPrior& prior);
+/// Variance of that motion by the prior alone, for Qc = 1 and dt ≥ 0 [s³].
 double motion_variance(double dt, const MotionPrior& prior = {});
-/// The expected state dt later, or earlier.
+/// The expected state dt later; for dt < 0 that at constant velocity.
 ControlState extrapolate(const ControlState& state, double dt, const MotionPrior& prior = {});
 
 /// Weights of what determines the local tangent ξ(τ) between two states, and those of its time derivative.
@@ -70,12 +73,12 @@ class GpInterval {
 
   /// Derivatives of (ξ_1, w_1, c_1) with respect to the increments of both states. ∂w_1/∂δT_i passes through ξ_1.
   struct Derivatives {
-    Matrix6 xi1_T0;                      ///< ∂ξ_1/∂δT_0 = −J_l(ξ_1)⁻¹
-    Matrix6 xi1_T1;                      ///< ∂ξ_1/∂δT_1 = J_r(ξ_1)⁻¹
-    Matrix6 w1_T0;                       ///< ∂w_1/∂δT_0
-    Matrix6 w1_T1;                       ///< ∂w_1/∂δT_1
-    Matrix6 w1_v1;                       ///< ∂w_1/∂δϖ_1 = J_r(ξ_1)⁻¹
-    Matrix6 c1_T0, c1_T1, c1_v1, c1_a1;  ///< with Singer's prior alone
+    Matrix6 xi1_T0;  ///< ∂ξ_1/∂δT_0 = −J_l(ξ_1)⁻¹
+    Matrix6 xi1_T1;  ///< ∂ξ_1/∂δT_1 = J_r(ξ_1)⁻¹
+    Matrix6 w1_T0;   ///< ∂w_1/∂δT_0
+    Matrix6 w1_T1;   ///< ∂w_1/∂δT_1
+    Matrix6 w1_v1;   ///< ∂w_1/∂δϖ_1 = J_r(ξ_1)⁻¹
+    Matrix6 c1_T0 = Matrix6::Zero(), c1_T1 = c1_T0, c1_v1 = c1_T0, c1_a1 = c1_T0;  ///< zero for WNOA
   };
   Derivatives derivatives() const;
 
@@ -121,11 +124,11 @@ class GpInterval {
 
   double t0_, dt_;
   MotionPrior prior_;
-  double rate_;
+  double rate_ = 0.0;
   singer::Basis basis_;
   SE3 T0_;
   Vector6 velocity0_, velocity1_, xi1_, w1_;
-  Vector6 acceleration0_, acceleration1_, c1_;
+  Vector6 acceleration0_ = Vector6::Zero(), acceleration1_ = acceleration0_, c1_ = acceleration0_;
   Matrix6 right_inverse_;  // J_r(ξ_1)⁻¹
 };
 

@@ -58,7 +58,7 @@ std::array<double, 3> functions(const Basis& basis, double s, int derivative) {
 
 }  // namespace
 
-double rate_within(double rate, double dt) { return std::min(rate, kMostRate / dt); }
+double rate_within(double rate, double dt) { return dt > 0.0 ? std::min(rate, kMostRate / dt) : rate; }
 
 Matrix3 transition(double dt, double rate) {
   const auto [position, velocity, acceleration] = decays(rate * dt);

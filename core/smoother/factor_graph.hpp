@@ -97,7 +97,9 @@ struct FactorGraph {
   std::vector<ControlState> states;
   std::vector<Landmark> landmarks;
   std::vector<IntervalObservations> intervals;  ///< intervals[k] ends in state k; intervals[0] is empty
-  std::vector<Vector6> qcs;                     ///< qcs[k]: power spectral density of the prior over interval k
+  /// qcs[k]: power spectral density of the prior over interval k; qcs[0]: of the first state's acceleration, if it has
+  /// one.
+  std::vector<Vector6> qcs;
   /// expansions[k] ≥ 0: adds the cost −expansions[k] log s to interval k; s is its distance to the scene
   /// (scene_distance()). It balances a bias of the prior: a prior with an estimated density has no scale, but as a
   /// fixed density it contracts the world with a force of eᵀ Q⁻¹ e of the translations of each interval. The expansion

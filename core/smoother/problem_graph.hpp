@@ -12,8 +12,8 @@ FactorGraph to_graph(const Problem& problem, const MotionPrior& motion_prior = {
 /// The problem file's form of the result of a run: present estimates become the initial guess. Removed landmarks are
 /// left out, and the others are renumbered. The format has no robust loss and no scale anchor: the loss is dropped, and
 /// each of the anchor's landmarks gets a prior at its present estimate, with a sigma of 5 % of its distance. Densities
-/// of the prior become their geometric mean. Sigmas are increased according to the share of information that the loss
-/// counts.
+/// of the prior become their geometric mean; its kind and accelerations are dropped. Sigmas are increased according to
+/// the share of information that the loss counts.
 Problem to_problem(const FactorGraph& graph);
 
 }  // namespace evbench::smoother

@@ -64,7 +64,14 @@ class IncrementalRun {
 
   void add_step(std::size_t k) {
     const ControlState& state = problem_.states[k];
-    k == 0 ? engine_.add_state(state) : engine_.add_state_at(state.t);
+    if (k == 0) {
+      engine_.add_state(state);
+    } else {
+      const ControlState& newest = engine_.graph().states.back();
+      ControlState next = extrapolate(newest, state.t - newest.t, motion_prior_);
+      next.t = state.t;  // to the last bit: observations may be at this time
+      engine_.add_state(next);
+    }
     for (const auto& prior : problem_.pose_priors) {
       if (prior.state == static_cast<int>(k)) engine_.add_pose_prior({prior.state, prior.T, prior.sigma});
     }

@@ -76,7 +76,7 @@ std::optional<Matrix12> Smoother::poses(int i, int j) { return engine_->poses(i,
 std::optional<Matrix12> Smoother::covariance(double t) { return engine_->covariance(t); }
 std::optional<Matrix12> Smoother::newest_covariance() { return engine_->newest_covariance(); }
 std::optional<Matrix3> Smoother::landmark_covariance(int landmark) { return engine_->landmark_covariance(landmark); }
-std::optional<Matrix2> Smoother::predicted_covariance(int landmark, const Eigen::Matrix<double, 2, 12>& J_state,
+std::optional<Matrix2> Smoother::predicted_covariance(int landmark, const ImageJacobian& J_state,
                                                       const Matrix23& J_landmark) {
   return engine_->predicted_covariance(landmark, J_state, J_landmark);
 }

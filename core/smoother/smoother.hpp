@@ -40,6 +40,9 @@ struct SmootherOptions {
   double lag = 0.0;
 };
 
+/// ∂(image)/∂(increment of a state): 12 or 18 columns.
+using ImageJacobian = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, 18>;
+
 /// What an update did.
 struct UpdateSummary {
   int first_stage = 0;      ///< oldest stage that was redone
@@ -70,7 +73,7 @@ struct OptimiseSummary {
 ///   smoother.add_state({0.0, SE3(), Vector6::Zero()});
 ///   smoother.add_pose_prior({0, SE3(), Vector6::Constant(1e-4)});
 ///   for each key time t:
-///     smoother.add_state_at(t);                    // continues the newest one with constant velocity
+///     smoother.add_state_at(t);                    // continues the newest one as the motion prior expects
 ///     smoother.add_observation(landmark, {time, pixel, 1.0 / sigma});  // any time until t
 ///     smoother.update();
 ///     smoother.graph().states.back();              // the newest estimate
@@ -188,8 +191,7 @@ class Smoother {
   std::optional<Matrix3> landmark_covariance(int landmark);
   /// Covariance of J_state δ_newest + J_landmark δ_landmark, e.g. of a landmark's predicted image. A landmark that has
   /// left the root counts as independent of the newest state.
-  std::optional<Matrix2> predicted_covariance(int landmark, const Eigen::Matrix<double, 2, 12>& J_state,
-                                              const Matrix23& J_landmark);
+  std::optional<Matrix2> predicted_covariance(int landmark, const ImageJacobian& J_state, const Matrix23& J_landmark);
 
  private:
   std::unique_ptr<class Engine> engine_;

@@ -25,6 +25,7 @@ std::vector<UndistortedFeature> FeaturePrediction::expected(Estimate& estimate, 
   const SE3 motion = se3::exp(xi), T_camera_world = (newest.T * motion).inverse();
   Eigen::Matrix<double, 6, 12> J_pose;  // of the predicted pose's increment
   J_pose << se3::adjoint(motion.inverse()), dt * se3::right_jacobian(xi);
+  const Matrix6 J_acceleration = motion_per_acceleration(dt, graph.motion_prior) * se3::right_jacobian(xi);
   const Matrix6 drift = (motion_variance(std::abs(dt), graph.motion_prior) * graph.qc).asDiagonal();
   std::vector<UndistortedFeature> result;
   for (const auto& [id, landmark] : nearly_in_view(estimate, tracks, t, upcoming)) {
@@ -37,7 +38,10 @@ std::vector<UndistortedFeature> FeaturePrediction::expected(Estimate& estimate, 
     if (!in_view(camera, pixel, kLensReach)) continue;
     const Matrix23 J_point = camera.project_jacobian(point), J_landmark = J_point * T_camera_world.R();
     const Matrix26 J_image = J_point * seen_point_jacobian(point);
-    const auto& known = image_covariance(estimate, landmark, ended, J_image * J_pose, J_landmark);
+    ImageJacobian J_state(2, graph.state_size());
+    J_state.leftCols<12>() = J_image * J_pose;
+    if (graph.motion_prior.has_acceleration()) J_state.rightCols<6>() = J_image * J_acceleration;
+    const auto& known = image_covariance(estimate, landmark, ended, J_state, J_landmark);
     if (known) result.push_back({id, position, pixel, *known + J_image * drift * J_image.transpose()});
   }
   return result;
@@ -78,7 +82,7 @@ const std::vector<std::pair<TrackId, int>>& FeaturePrediction::nearly_in_view(co
 /// Covariance of a landmark's image, without the motion since the newest state. Computed once a step: it is expensive,
 /// and hardly changes before the next.
 const std::optional<Matrix2>& FeaturePrediction::image_covariance(Estimate& estimate, int landmark, bool ended,
-                                                                  const Eigen::Matrix<double, 2, 12>& J_state,
+                                                                  const ImageJacobian& J_state,
                                                                   const Matrix23& J_landmark) {
   auto& [step, covariances] = covariances_;
   if (step != estimate.steps()) covariances.clear();
@@ -92,7 +96,8 @@ const std::optional<Matrix2>& FeaturePrediction::image_covariance(Estimate& esti
   } else {
     const std::optional<Matrix12>& state = estimate.newest_covariance();
     const std::optional<Matrix3> own = estimate.kept_covariance(landmark);
-    if (state && own) result = J_state * *state * J_state.transpose() + J_landmark * *own * J_landmark.transpose();
+    const Eigen::Matrix<double, 2, 12> J = J_state.leftCols<12>();  // known without the acceleration
+    if (state && own) result = J * *state * J.transpose() + J_landmark * *own * J_landmark.transpose();
   }
   return result;
 }

@@ -279,19 +279,19 @@ std::optional<Matrix3> Engine::landmark_covariance(int landmark) {
   return result;
 }
 
-std::optional<Matrix2> Engine::predicted_covariance(int landmark, const Eigen::Matrix<double, 2, 12>& J_state,
+std::optional<Matrix2> Engine::predicted_covariance(int landmark, const ImageJacobian& J_state,
                                                     const Matrix23& J_landmark) {
   if (!factorise_undamped()) return std::nullopt;
   const std::optional<Unknown> place = factorisation_.find_landmark(landmark);
   const bool in_root = place && place->stage == static_cast<int>(graph_.states.size());
   std::vector<int> rows;
-  for (int i = 0; i < 12; ++i)
+  for (int i = 0; i < J_state.cols(); ++i)
     rows.push_back(factorisation_.root().row_of_state(static_cast<int>(graph_.states.size()) - 1) + i);
   if (in_root) {
     for (int i = 0; i < 3; ++i) rows.push_back(place->row + i);
   }
   Eigen::MatrixXd J(2, rows.size());
-  J.leftCols<12>() = J_state;
+  J.leftCols(J_state.cols()) = J_state;
   if (in_root) J.rightCols<3>() = J_landmark;
   Matrix2 result = factorisation_.image_in_root(rows, J);
   if (!in_root) {

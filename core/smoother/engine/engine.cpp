@@ -176,7 +176,8 @@ double Engine::reprojection_mean(int landmark) {
 double Engine::size_of_state(int i, const StateVector& delta) const {
   if (!delta.allFinite()) return std::numeric_limits<double>::infinity();
   const double dt = i > 0 ? graph_.states[index(i)].t - graph_.states[index(i - 1)].t : 0.0;
-  constexpr double kHermiteMaximum = 4.0 / 27.0;  // of s (1 − s)²
+  // Of s (1 − s)², and of the corresponding weight of the quintic polynomial.
+  const double kHermiteMaximum = graph_.motion_prior.has_acceleration() ? 0.2 : 4.0 / 27.0;
   const double rotation = delta.head<3>().norm() + kHermiteMaximum * dt * delta.segment<3>(6).norm();
   const double translation = delta.segment<3>(3).norm() + kHermiteMaximum * dt * delta.segment<3>(9).norm();
   double turn = 0.0, way = 0.0;

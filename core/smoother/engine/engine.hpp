@@ -47,8 +47,7 @@ class Engine {
   std::optional<Matrix12> covariance(double t);
   std::optional<Matrix12> newest_covariance();
   std::optional<Matrix3> landmark_covariance(int landmark);
-  std::optional<Matrix2> predicted_covariance(int landmark, const Eigen::Matrix<double, 2, 12>& J_state,
-                                              const Matrix23& J_landmark);
+  std::optional<Matrix2> predicted_covariance(int landmark, const ImageJacobian& J_state, const Matrix23& J_landmark);
 
  private:
   /// A variable's increment before a solve, to undo it.

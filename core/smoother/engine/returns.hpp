@@ -171,7 +171,7 @@ class Returns {
   void free_id(int id) { free_.push_back(id); }
 
   /// Adds the return of a landmark with this walk, which has crossed all others, into the landmark's slot; R has
-  /// `extent` rows. Returns null and does nothing if the other returns leave too little of it unknown to be
+  /// `root.extent()` rows. Returns null and does nothing if the other returns leave too little of it unknown to be
   /// distinguished from rounding.
   Return* append(Return&& result, const Walk& walk, const Root& root);
 
