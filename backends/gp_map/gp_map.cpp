@@ -184,7 +184,7 @@ void GpMap::check_support() {
   }
 }
 
-/// Deviations of the next observations from the newest state's constant velocity determine the next control state.
+/// Deviations of the next observations from the motion expected of the newest state determine the next control state.
 void GpMap::predict_next_state() {
   constexpr double kLargestSpread = 2.0;
   const NoiseLearner& learnt = map_->estimate.noise;

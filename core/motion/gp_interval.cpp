@@ -62,8 +62,7 @@ InterpolationWeights GpInterval::weights(double t) const {
   if (!prior_.has_acceleration()) {
     return {dt_ * s * (1.0 - s) * (1.0 - s), s * s * (3.0 - 2.0 * s), -dt_ * s * s * (1.0 - s)};
   }
-  const singer::Weights w = singer::weights(basis_, s, 0);
-  return {w.velocity0, w.end, w.end_velocity, w.acceleration0, w.end_acceleration};
+  return singer::weights(basis_, s, 0);
 }
 
 InterpolationWeights GpInterval::rate_weights(double t) const {
@@ -71,8 +70,7 @@ InterpolationWeights GpInterval::rate_weights(double t) const {
   if (!prior_.has_acceleration()) {
     return {(1.0 - s) * (1.0 - 3.0 * s), 6.0 * s * (1.0 - s) / dt_, s * (3.0 * s - 2.0)};
   }
-  const singer::Weights w = singer::weights(basis_, s, 1);
-  return {w.velocity0, w.end, w.end_velocity, w.acceleration0, w.end_acceleration};
+  return singer::weights(basis_, s, 1);
 }
 
 Vector6 GpInterval::velocity(double t) const { return se3::right_jacobian(local(t)) * local_rate(t); }
@@ -102,10 +100,10 @@ GpInterval::Query GpInterval::query(double t, const Derivatives& d) const {
   const SE3 step = se3::exp(xi);
   const Matrix6 jr = se3::right_jacobian(xi);
   const Matrix6 bend = se3::d_right_jacobian(xi, rate);  // ∂(J_r(ξ)ξ')/∂ξ
-  Matrix6 xi_T0 = h.xi1 * d.xi1_T0 + h.w1 * d.w1_T0;
-  Matrix6 xi_T1 = h.xi1 * d.xi1_T1 + h.w1 * d.w1_T1;
-  Matrix6 rate_T0 = dh.xi1 * d.xi1_T0 + dh.w1 * d.w1_T0;
-  Matrix6 rate_T1 = dh.xi1 * d.xi1_T1 + dh.w1 * d.w1_T1;
+  Matrix6 xi_T0 = h.end * d.xi1_T0 + h.end_velocity * d.w1_T0;
+  Matrix6 xi_T1 = h.end * d.xi1_T1 + h.end_velocity * d.w1_T1;
+  Matrix6 rate_T0 = dh.end * d.xi1_T0 + dh.end_velocity * d.w1_T0;
+  Matrix6 rate_T1 = dh.end * d.xi1_T1 + dh.end_velocity * d.w1_T1;
   Query q;
   q.T = T0_ * step;
   q.velocity = jr * rate;
@@ -114,21 +112,23 @@ GpInterval::Query GpInterval::query(double t, const Derivatives& d) const {
     q.J1.resize(12, 12);
     q.J0 << se3::adjoint(step.inverse()) + jr * xi_T0, h.velocity0 * jr, bend * xi_T0 + jr * rate_T0,
         h.velocity0 * bend + dh.velocity0 * jr;
-    q.J1 << jr * xi_T1, h.w1 * jr * d.w1_v1, bend * xi_T1 + jr * rate_T1, (h.w1 * bend + dh.w1 * jr) * d.w1_v1;
+    q.J1 << jr * xi_T1, h.end_velocity * jr * d.w1_v1, bend * xi_T1 + jr * rate_T1,
+        (h.end_velocity * bend + dh.end_velocity * jr) * d.w1_v1;
     return q;
   }
-  xi_T0 += h.c1 * d.c1_T0;
-  xi_T1 += h.c1 * d.c1_T1;
-  rate_T0 += dh.c1 * d.c1_T0;
-  rate_T1 += dh.c1 * d.c1_T1;
-  const Matrix6 xi_v1 = h.w1 * d.w1_v1 + h.c1 * d.c1_v1, rate_v1 = dh.w1 * d.w1_v1 + dh.c1 * d.c1_v1;
+  xi_T0 += h.end_acceleration * d.c1_T0;
+  xi_T1 += h.end_acceleration * d.c1_T1;
+  rate_T0 += dh.end_acceleration * d.c1_T0;
+  rate_T1 += dh.end_acceleration * d.c1_T1;
+  const Matrix6 xi_v1 = h.end_velocity * d.w1_v1 + h.end_acceleration * d.c1_v1,
+                rate_v1 = dh.end_velocity * d.w1_v1 + dh.end_acceleration * d.c1_v1;
   q.J0.resize(12, 18);
   q.J1.resize(12, 18);
   q.J0 << se3::adjoint(step.inverse()) + jr * xi_T0, h.velocity0 * jr, h.acceleration0 * jr,
       bend * xi_T0 + jr * rate_T0, h.velocity0 * bend + dh.velocity0 * jr,
       h.acceleration0 * bend + dh.acceleration0 * jr;
-  q.J1 << jr * xi_T1, jr * xi_v1, h.c1 * jr * d.c1_a1, bend * xi_T1 + jr * rate_T1, bend * xi_v1 + jr * rate_v1,
-      (h.c1 * bend + dh.c1 * jr) * d.c1_a1;
+  q.J1 << jr * xi_T1, jr * xi_v1, h.end_acceleration * jr * d.c1_a1, bend * xi_T1 + jr * rate_T1,
+      bend * xi_v1 + jr * rate_v1, (h.end_acceleration * bend + dh.end_acceleration * jr) * d.c1_a1;
   return q;
 }
 
@@ -189,9 +189,9 @@ Matrix12 GpInterval::conditional_covariance(double t, const Vector6& qc) const {
   if (prior_.has_acceleration()) {
     const Matrix3 phi = singer::transition(dt_ - tau, rate_);
     const Matrix3 before = singer::process_covariance(tau, rate_), after = singer::process_covariance(dt_ - tau, rate_);
-    // Of one axis: before − before φᵀ (φ before φᵀ + after)⁻¹ φ before.
     const Matrix3 total = phi * before * phi.transpose() + after;
-    const Matrix3 axis = before - before * phi.transpose() * total.llt().solve(phi * before);
+    const Matrix3 gain = total.llt().solve(phi * before).transpose(), rest = Matrix3::Identity() - gain * phi;
+    const Matrix3 axis = rest * before * rest.transpose() + gain * after * gain.transpose();  // Joseph's form
     local_covariance.setZero();
     for (int r = 0; r < 2; ++r) {
       for (int c = 0; c < 2; ++c) local_covariance.block<6, 6>(6 * r, 6 * c).diagonal() = axis(r, c) * qc;

@@ -34,12 +34,6 @@ double motion_variance(double dt, const MotionPrior& prior = {});
 /// The expected state dt later; for dt < 0 that at constant velocity.
 ControlState extrapolate(const ControlState& state, double dt, const MotionPrior& prior = {});
 
-/// Weights of what determines the local tangent ξ(τ) between two states, and those of its time derivative.
-struct InterpolationWeights {
-  double velocity0, xi1, w1;         ///< ξ(τ) = velocity0 ϖ_0 + xi1 ξ_1 + w1 w_1 ...
-  double acceleration0 = 0, c1 = 0;  ///<        ... + acceleration0 ϖ_0' + c1 c_1
-};
-
 /// The GP between two neighbouring control states (0 and 1) under the motion prior.
 ///
 /// With ξ_1 = Log(T_0⁻¹T_1), w_1 = J_r(ξ_1)⁻¹ϖ_1 and c_1 = d/dt(J_r(ξ)⁻¹ϖ) at the end, the posterior mean at τ = t −
@@ -63,6 +57,7 @@ class GpInterval {
   const singer::Basis& singer_basis() const { return basis_; }
   double singer_rate() const { return rate_; }  ///< that counts in this interval
 
+  /// Of (ϖ_0, ξ_1, w_1, ϖ_0', c_1) in ξ(τ), and in its derivative by time.
   InterpolationWeights weights(double t) const;
   InterpolationWeights rate_weights(double t) const;
   Vector6 local(double t) const { return combine(weights(t)); }
@@ -117,8 +112,8 @@ class GpInterval {
 
  private:
   Vector6 combine(const InterpolationWeights& h) const {
-    Vector6 sum = h.velocity0 * velocity0_ + h.xi1 * xi1_ + h.w1 * w1_;
-    if (prior_.has_acceleration()) sum += h.acceleration0 * acceleration0_ + h.c1 * c1_;
+    Vector6 sum = h.velocity0 * velocity0_ + h.end * xi1_ + h.end_velocity * w1_;
+    if (prior_.has_acceleration()) sum += h.acceleration0 * acceleration0_ + h.end_acceleration * c1_;
     return sum;
   }
 

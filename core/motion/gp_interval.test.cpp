@@ -42,49 +42,53 @@ std::pair<ControlState, ControlState> accelerated(RandomTangents& random, int i)
   return {a, b};
 }
 
-template <int Orders>
-void check_interpolation_jacobians(bool singer) {
-  constexpr int kState = 6 * Orders, kPair = 2 * kState;
-  using Pair = Eigen::Matrix<double, kPair, 1>;
+/// Calls check(random, number, interval, moved) 1,000 times; moved(δ) is the interval with both states incremented.
+template <int Orders, class Check>
+void for_random_intervals(Check check) {
+  using Pair = Eigen::Matrix<double, 12 * Orders, 1>;
   RandomTangents random;
   for (int i = 0; i < 1000; ++i) {
+    const bool singer = Orders == 3;
     const MotionPrior prior = singer ? singer_prior(i) : kWnoa;
-    const auto pair = singer ? accelerated(random, i) : neighbours(random, i);
-    const ControlState a = pair.first, b = pair.second;
-    const GpInterval interval(a, b, prior);
-    const double s = i % 5 == 0 ? 1.0 : i % 5 == 1 ? 0.0 : random.uniform(0.0, 1.0);
-    const double t = a.t + s * interval.dt();
-    const GpInterval::Query query = interval.query(t, interval.derivatives());
-    CHECK(se3::log(query.T.inverse() * interval.pose(t)).norm() < 1e-12);
-    const auto J = central_differences<12, kPair>([&](const Pair& d) -> Vector12 {
-      const GpInterval moved(a.retract(d.template head<kState>()), b.retract(d.template tail<kState>()), prior);
-      Vector12 value;
-      value << se3::log(query.T.inverse() * moved.pose(t)), moved.velocity(t);
-      return value;
+    const auto states = singer ? accelerated(random, i) : neighbours(random, i);
+    const ControlState a = states.first, b = states.second;
+    check(random, i, GpInterval(a, b, prior), [&](const Pair& d) {
+      return GpInterval(a.retract(d.template head<6 * Orders>()), b.retract(d.template tail<6 * Orders>()), prior);
     });
-    CHECK(relative_error(query.J0, J.template leftCols<kState>()) < kTolerance);
-    CHECK(relative_error(query.J1, J.template rightCols<kState>()) < kTolerance);
   }
 }
 
 template <int Orders>
-void check_prior_jacobians(bool singer) {
+void check_interpolation_jacobians() {
   constexpr int kState = 6 * Orders, kPair = 2 * kState;
-  using Pair = Eigen::Matrix<double, kPair, 1>;
-  RandomTangents random;
-  for (int i = 0; i < 1000; ++i) {
-    const MotionPrior prior = singer ? singer_prior(i) : kWnoa;
-    const auto pair = singer ? accelerated(random, i) : neighbours(random, i);
-    const ControlState a = pair.first, b = pair.second;
-    const GpInterval interval(a, b, prior);
-    const auto J = central_differences<kState, kPair>([&](const Pair& d) -> Eigen::Matrix<double, kState, 1> {
-      return GpInterval(a.retract(d.template head<kState>()), b.retract(d.template tail<kState>()), prior)
-          .prior_residual();
+  for_random_intervals<Orders>([](RandomTangents& random, int i, const GpInterval& interval, auto moved) {
+    const double s = i % 5 == 0 ? 1.0 : i % 5 == 1 ? 0.0 : random.uniform(0.0, 1.0);
+    const double t = interval.t0() + s * interval.dt();
+    const GpInterval::Query query = interval.query(t, interval.derivatives());
+    CHECK(se3::log(query.T.inverse() * interval.pose(t)).norm() < 1e-12);
+    const auto J = central_differences<12, kPair>([&](const Eigen::Matrix<double, kPair, 1>& d) -> Vector12 {
+      const GpInterval other = moved(d);
+      Vector12 value;
+      value << se3::log(query.T.inverse() * other.pose(t)), other.velocity(t);
+      return value;
     });
+    CHECK(relative_error(query.J0, J.template leftCols<kState>()) < kTolerance);
+    CHECK(relative_error(query.J1, J.template rightCols<kState>()) < kTolerance);
+  });
+}
+
+template <int Orders>
+void check_prior_jacobians() {
+  constexpr int kState = 6 * Orders, kPair = 2 * kState;
+  for_random_intervals<Orders>([](RandomTangents&, int, const GpInterval& interval, auto moved) {
+    const auto J = central_differences<kState, kPair>(
+        [&](const Eigen::Matrix<double, kPair, 1>& d) -> Eigen::Matrix<double, kState, 1> {
+          return moved(d).prior_residual();
+        });
     const GpInterval::PriorJacobians jacobians = interval.prior_jacobians(interval.derivatives());
     CHECK(relative_error(jacobians.J0, J.template leftCols<kState>()) < kTolerance);
     CHECK(relative_error(jacobians.J1, J.template rightCols<kState>()) < kTolerance);
-  }
+  });
 }
 
 }  // namespace
@@ -145,7 +149,7 @@ TEST_CASE("Singer's interpolation is the GP's conditional mean, its limits are t
                           singer::process_covariance(dt, rate).inverse();
       const Matrix3 lambda = singer::transition(tau, rate) - psi * singer::transition(dt, rate);
       for (int derivative = 0; derivative < 3; ++derivative) {
-        const singer::Weights w = singer::weights(basis, s, derivative);
+        const InterpolationWeights w = singer::weights(basis, s, derivative);
         const double unit = std::pow(dt, -derivative);
         CHECK(w.velocity0 == Approx(lambda(derivative, 1)).margin(1e-6 * dt * unit));
         CHECK(w.acceleration0 == Approx(lambda(derivative, 2)).margin(1e-6 * dt * dt * unit));
@@ -153,7 +157,7 @@ TEST_CASE("Singer's interpolation is the GP's conditional mean, its limits are t
         CHECK(w.end_velocity == Approx(psi(derivative, 1)).margin(1e-6 * dt * unit));
         CHECK(w.end_acceleration == Approx(psi(derivative, 2)).margin(1e-6 * dt * dt * unit));
       }
-      const singer::Weights slow = singer::weights(singer::Basis(dt, 1e-3), s, 0);
+      const InterpolationWeights slow = singer::weights(singer::Basis(dt, 1e-3), s, 0);
       CHECK(slow.end == Approx(s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)));
     }
   }
@@ -192,13 +196,13 @@ TEST_CASE("Constant velocity is interpolated exactly and has zero prior cost") {
 }
 
 TEST_CASE("Interpolation Jacobians equal central differences") {
-  check_interpolation_jacobians<2>(false);
-  check_interpolation_jacobians<3>(true);
+  check_interpolation_jacobians<2>();
+  check_interpolation_jacobians<3>();
 }
 
 TEST_CASE("Motion prior Jacobians equal central differences") {
-  check_prior_jacobians<2>(false);
-  check_prior_jacobians<3>(true);
+  check_prior_jacobians<2>();
+  check_prior_jacobians<3>();
 }
 
 TEST_CASE("The prior's information matrix is the inverse of its covariance") {

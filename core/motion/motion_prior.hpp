@@ -23,4 +23,12 @@ struct MotionPrior {
   bool operator==(const MotionPrior&) const = default;
 };
 
+/// Weights of what determines the motion between two states in its position at a time, or in a derivative of it: the
+/// velocity and acceleration at the begin, and position, velocity and acceleration at the end, all in the tangent space
+/// of the begin, where its position is zero. Without accelerations their weights are zero.
+struct InterpolationWeights {
+  double velocity0, end, end_velocity;
+  double acceleration0 = 0.0, end_acceleration = 0.0;
+};
+
 }  // namespace evbench

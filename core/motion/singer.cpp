@@ -93,7 +93,7 @@ Basis::Basis(double dt_, double rate) : dt(dt_), square(rate * dt * rate * dt) {
   from_end = at_end.inverse() * Vector3(1.0, dt, dt * dt).asDiagonal();
 }
 
-Weights weights(const Basis& basis, double s, int derivative) {
+InterpolationWeights weights(const Basis& basis, double s, int derivative) {
   const auto p = functions(basis, s, derivative);
   const double dt = basis.dt, scale = derivative == 0 ? 1.0 : derivative == 1 ? 1.0 / dt : 1.0 / (dt * dt);
   const Eigen::RowVector3d w = scale * Eigen::RowVector3d(p[0], p[1], p[2]) * basis.from_end;

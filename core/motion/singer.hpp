@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "core/geometry/types.hpp"
+#include "core/motion/motion_prior.hpp"
 
 namespace evbench {
 
@@ -50,12 +51,8 @@ struct Basis {
   Basis(double dt, double rate);
 };
 
-/// Weights of x_0', x_1, x_1', x_0'', x_1'' in x(τ), or in one of its derivatives; that of x_0 is not needed, x_0 = 0.
-struct Weights {
-  double velocity0, end, end_velocity, acceleration0, end_acceleration;
-};
-/// derivative: 0, 1 or 2; s = τ/Δt.
-Weights weights(const Basis& basis, double s, int derivative);
+/// The weights of the mean at s = τ/Δt, or of its first or second derivative by time.
+InterpolationWeights weights(const Basis& basis, double s, int derivative);
 
 }  // namespace singer
 }  // namespace evbench

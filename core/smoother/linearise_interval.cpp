@@ -15,7 +15,7 @@
 // With m = T_0⁻¹ l and ξ = a ϖ_0 + b ξ_1 + c w_1 (with Singer's prior + d ϖ_0' + e c_1) a residual is a function of
 // (m, ξ) alone, e = whitened π(Exp(−ξ) m) − z. With G = ∂e/∂ξ the block of each pair of y = (ϖ_0, ξ_1, w_1, ...) is a
 // multiple of GᵀG, and the first pose acts through m alone: δm = R_0ᵀ δl + [m^, −I] δT_0. Only once an interval these
-// local coordinates (δT_0, δy) are mapped to the increments of both states.
+// local coordinates are mapped to the increments of both states.
 namespace evbench::smoother {
 namespace {
 
@@ -171,15 +171,15 @@ void add_landmarks(const Shared<Orders>& shared, const IntervalInput& in, const 
   }
 }
 
-/// Normal equations in the local coordinates (δT_0, δy).
+/// Normal equations in the local coordinates: δT_0, then δϖ_0 (and δϖ_0') of the begin, then δξ_1, δw_1 (and δc_1) of
+/// the end. The first half are increments of the first state.
 template <int Orders>
 struct LocalSystem {
-  static constexpr int kSize = 12 * Orders, kEnd = 6 * Orders;
-  using Information = Eigen::Matrix<double, kEnd, kEnd>;
-  using Residual = Eigen::Matrix<double, kEnd, 1>;
+  static constexpr int kState = 6 * Orders, kBegin = kState - 6;  ///< rows of the end, and of the begin without δT_0
+  using End = Eigen::Matrix<double, kState, kState>;
 
-  Eigen::Matrix<double, kSize, kSize> H;
-  Eigen::Matrix<double, kSize, 1> g;
+  Eigen::Matrix<double, 2 * kState, 2 * kState> H;
+  Eigen::Matrix<double, 2 * kState, 1> g;
 
   explicit LocalSystem(const IntervalSums<Orders>& sums) {
     constexpr Eigen::Index kTerms = IntervalSums<Orders>::kTerms;
@@ -192,115 +192,96 @@ struct LocalSystem {
         for (Eigen::Index p = 0; p < kTerms; ++p) {
           for (Eigen::Index q = 0; q <= p; ++q, ++pair) {
             const double value = sum(sums.yy[pair][n]);
-            const Eigen::Index r = 6 + 6 * p, c = 6 + 6 * q;
+            const Eigen::Index r = row_of(p), c = row_of(q);
             H(r + i, c + j) = H(r + j, c + i) = H(c + j, r + i) = H(c + i, r + j) = value;
           }
         }
       }
     }
-    for (Eigen::Index i = 0; i < 6 * kTerms; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      g(6 + i) = sum(sums.gradient_y[at]);
-      for (Eigen::Index j = 0; j < 6; ++j) H(6 + i, j) = H(j, 6 + i) = sum(sums.yT[at][index(j)]);
+    for (Eigen::Index term = 0; term < kTerms; ++term) {
+      for (Eigen::Index i = 0; i < 6; ++i) {
+        const Eigen::Index row = row_of(term) + i, at = 6 * term + i;
+        g(row) = sum(sums.gradient_y[index(at)]);
+        for (Eigen::Index j = 0; j < 6; ++j) H(row, j) = H(j, row) = sum(sums.yT[index(at)][index(j)]);
+      }
     }
   }
 
-  /// The residual is linear in the local coordinates, J = [0, F, I, ...]: (ξ_1 − Δt ϖ_0 ; w_1 − ϖ_0) for WNOA, with
-  /// Singer's prior less Φ's last column times ϖ_0', and (...; c_1 − Φ ϖ_0'). Returns its cost.
+  /// The residual is linear in the local coordinates, J = [0, F, I]: the end less its expectation from the begin.
+  /// Returns its cost.
   double add_motion_prior(const GpInterval& interval, const Vector6& qc) {
-    const Information W = information(interval, qc);
-    const Residual e = interval.prior_residual();
-    const Residual We = W * e;
-    const double dt = interval.dt();
-    const Eigen::Matrix<double, kEnd, 6> WF = -dt * W.template leftCols<6>() - W.template middleCols<6>(6);
-    const Matrix6 FWF = -dt * WF.template topRows<6>() - WF.template middleRows<6>(6);
-    H.template block<6, 6>(6, 6) += FWF;
-    H.template block<12, 6>(12, 6) += WF.template topRows<12>();
-    H.template block<6, 12>(6, 12) += WF.template topRows<12>().transpose();
-    H.template block<12, 12>(12, 12) += W.template topLeftCorner<12, 12>();
-    g.template segment<6>(6) -= dt * We.template head<6>() + We.template segment<6>(6);
-    g.template segment<12>(12) += We.template head<12>();
-    if constexpr (Orders == 3) add_acceleration(interval, W, WF, We);
+    const End W = information(interval, qc);
+    const Eigen::Matrix<double, kState, 1> e = interval.prior_residual();
+    const Eigen::Matrix<double, kState, 1> We = W * e;
+    const Eigen::Matrix<double, kState, kBegin> WF = times_F(interval, W);
+    H.template block<kBegin, kBegin>(6, 6) += times_F(interval, WF.transpose().eval()).transpose();
+    H.template block<kState, kBegin>(kState, 6) += WF;
+    H.template block<kBegin, kState>(6, kState) += WF.transpose();
+    H.template bottomRightCorner<kState, kState>() += W;
+    g.template segment<kBegin>(6) += times_F(interval, We.transpose().eval()).transpose();
+    g.template tail<kState>() += We;
     return 0.5 * e.dot(We);
   }
 
  private:
-  static Information information(const GpInterval& interval, const Vector6& qc) {
+  /// The row of a term of y = (ϖ_0, ξ_1, w_1, ϖ_0', c_1).
+  static Eigen::Index row_of(Eigen::Index term) {
+    constexpr std::array<Eigen::Index, 5> kOrder = {0, Orders - 1, Orders, 1, 4};
+    return 6 + 6 * kOrder[index(term)];
+  }
+
+  static End information(const GpInterval& interval, const Vector6& qc) {
     if constexpr (Orders == 2) return wnoa::process_information(interval.dt(), qc);
     const Eigen::MatrixXd axis = interval.prior_information_of_axis();
-    Information W = Information::Zero();
+    End W = End::Zero();
     for (int r = 0; r < Orders; ++r) {
       for (int c = 0; c < Orders; ++c) W.template block<6, 6>(6 * r, 6 * c).diagonal() = axis(r, c) * qc.cwiseInverse();
     }
     return W;
   }
 
-  /// The rows of ϖ_0' and c_1, from 24 and 30 on.
-  void add_acceleration(const GpInterval& interval, const Information& W, const Eigen::Matrix<double, kEnd, 6>& WF,
-                        const Residual& We) {
-    const Vector3 decay = singer::transition(interval.dt(), interval.singer_rate()).col(2);
-    const auto weighted = [&](const auto& rows) {
-      return (-decay[0] * rows.template topRows<6>() - decay[1] * rows.template middleRows<6>(6) -
-              decay[2] * rows.template bottomRows<6>())
-          .eval();
-    };
-    const Eigen::Matrix<double, 6, kEnd> AW = weighted(W);
-    const auto add = [this](Eigen::Index r, Eigen::Index c, const Matrix6& block) {
-      H.template block<6, 6>(r, c) += block;
-      if (r != c) H.template block<6, 6>(c, r) += block.transpose();
-    };
-    add(24, 6, weighted(WF));
-    add(24, 12, AW.template leftCols<6>());
-    add(24, 18, AW.template middleCols<6>(6));
-    add(24, 24, weighted(AW.transpose().eval()));
-    add(30, 6, WF.template bottomRows<6>());
-    add(30, 12, W.template block<6, 6>(12, 0));
-    add(30, 18, W.template block<6, 6>(12, 6));
-    add(30, 24, AW.template rightCols<6>().transpose());
-    add(30, 30, W.template block<6, 6>(12, 12));
-    g.template segment<6>(24) += weighted(We);
-    g.template segment<6>(30) += We.template tail<6>();
+  /// M F, where F = −Φ without its column of the pose: (−Δt, −1) for ϖ_0 and WNOA.
+  template <int Rows>
+  static Eigen::Matrix<double, Rows, kBegin> times_F(const GpInterval& interval,
+                                                     const Eigen::Matrix<double, Rows, kState>& M) {
+    Eigen::Matrix<double, Rows, kBegin> result;
+    result.template leftCols<6>() = -interval.dt() * M.template leftCols<6>() - M.template middleCols<6>(6);
+    if constexpr (Orders == 3) {
+      const Vector3 decay = singer::transition(interval.dt(), interval.singer_rate()).col(2);
+      result.template rightCols<6>() = -decay[0] * M.template leftCols<6>() - decay[1] * M.template middleCols<6>(6) -
+                                       decay[2] * M.template rightCols<6>();
+    }
+    return result;
   }
 };
 
-/// From the local coordinates to the increments of both states: δT_0, δϖ_0 (and δϖ_0') stay, those of the end are
-/// mapped.
-void map_to_states(const LocalSystem<2>& local, const GpInterval::Derivatives& d, IntervalLinearisation& result) {
-  using Matrix12x24 = Eigen::Matrix<double, 12, 24>;
-  Matrix12x24 map = Matrix12x24::Zero();
-  map.block<6, 6>(0, 0) = d.xi1_T0;
-  map.block<6, 6>(0, 12) = d.xi1_T1;
-  map.block<6, 6>(6, 0) = d.w1_T0;
-  map.block<6, 6>(6, 12) = d.w1_T1;
-  map.block<6, 6>(6, 18) = d.w1_v1;
-  Matrix12x24 half;
-  half.noalias() = 0.5 * local.H.bottomRightCorner<12, 12>() * map;
-  half.leftCols<12>() += local.H.bottomLeftCorner<12, 12>();
-  Eigen::Matrix<double, 24, 24> mixed;
+/// From the local coordinates to the increments of both states: the first half stays, the end is mapped.
+template <int Orders>
+void map_to_states(const LocalSystem<Orders>& local, const GpInterval::Derivatives& d, IntervalLinearisation& result) {
+  constexpr int kState = 6 * Orders, kPair = 2 * kState;
+  using Map = Eigen::Matrix<double, kState, kPair>;
+  Map map = Map::Zero();
+  const auto set = [&map](int r, int c, const Matrix6& block) { map.template block<6, 6>(r, c) = block; };
+  set(0, 0, d.xi1_T0);
+  set(0, kState, d.xi1_T1);
+  set(6, 0, d.w1_T0);
+  set(6, kState, d.w1_T1);
+  set(6, kState + 6, d.w1_v1);
+  if constexpr (Orders == 3) {
+    set(12, 0, d.c1_T0);
+    set(12, kState, d.c1_T1);
+    set(12, kState + 6, d.c1_v1);
+    set(12, kState + 12, d.c1_a1);
+  }
+  Map half;
+  half.noalias() = 0.5 * local.H.template bottomRightCorner<kState, kState>() * map;
+  half.template leftCols<kState>() += local.H.template bottomLeftCorner<kState, kState>();
+  Eigen::Matrix<double, kPair, kPair> mixed;
   mixed.noalias() = map.transpose() * half;
   result.states = mixed + mixed.transpose();
-  result.states.topLeftCorner<12, 12>() += local.H.topLeftCorner<12, 12>();
-  result.gradient.noalias() = map.transpose() * local.g.tail<12>();
-  result.gradient.head<12>() += local.g.head<12>();
-}
-
-void map_to_states(const LocalSystem<3>& local, const GpInterval::Derivatives& d, IntervalLinearisation& result) {
-  using Matrix36 = Eigen::Matrix<double, 36, 36>;
-  Matrix36 map = Matrix36::Zero();
-  map.block<12, 12>(0, 0).setIdentity();
-  map.block<6, 6>(12, 0) = d.xi1_T0;
-  map.block<6, 6>(12, 18) = d.xi1_T1;
-  map.block<6, 6>(18, 0) = d.w1_T0;
-  map.block<6, 6>(18, 18) = d.w1_T1;
-  map.block<6, 6>(18, 24) = d.w1_v1;
-  map.block<6, 6>(24, 12).setIdentity();
-  map.block<6, 6>(30, 0) = d.c1_T0;
-  map.block<6, 6>(30, 18) = d.c1_T1;
-  map.block<6, 6>(30, 24) = d.c1_v1;
-  map.block<6, 6>(30, 30) = d.c1_a1;
-  const Matrix36 mixed = map.transpose() * (0.5 * local.H * map).eval();
-  result.states = mixed + mixed.transpose();
-  result.gradient.noalias() = map.transpose() * local.g;
+  result.states.template topLeftCorner<kState, kState>() += local.H.template topLeftCorner<kState, kState>();
+  result.gradient.noalias() = map.transpose() * local.g.template tail<kState>();
+  result.gradient.template head<kState>() += local.g.template head<kState>();
 }
 
 /// Adds the gradient of the expansion −c log s = c log Σ 1/d_j. Its curvature is negligible against the observations'.

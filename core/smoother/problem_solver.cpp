@@ -16,7 +16,6 @@ class IncrementalRun {
  public:
   IncrementalRun(const Problem& problem, const SolveOptions& options)
       : problem_(problem),
-        motion_prior_(options.motion_prior),
         engine_(problem.camera, problem.qc, RobustLoss(), engine_options(options), options.motion_prior),
         number_(problem.landmarks.size(), -1),
         held_back_(problem.landmarks.size(), -1),
@@ -53,7 +52,7 @@ class IncrementalRun {
 
   /// All factors with the final estimate: with a lag the engine has dropped most of them.
   FactorGraph complete_graph() const {
-    FactorGraph graph = to_graph(problem_, motion_prior_);
+    FactorGraph graph = to_graph(problem_, engine_.graph().motion_prior);
     graph.states = engine_.graph().states;
     for (std::size_t j = 0; j < number_.size(); ++j) {
       if (number_[j] < 0) continue;
@@ -68,7 +67,7 @@ class IncrementalRun {
       engine_.add_state(state);
     } else {
       const ControlState& newest = engine_.graph().states.back();
-      ControlState next = extrapolate(newest, state.t - newest.t, motion_prior_);
+      ControlState next = extrapolate(newest, state.t - newest.t, engine_.graph().motion_prior);
       next.t = state.t;  // to the last bit: observations may be at this time
       engine_.add_state(next);
     }
@@ -102,7 +101,6 @@ class IncrementalRun {
   }
 
   const Problem& problem_;
-  MotionPrior motion_prior_;
   Smoother engine_;
   std::vector<int> number_;              ///< of a problem's landmark in the engine, −1: not in yet
   std::vector<std::int64_t> held_back_;  ///< the only observation of a landmark so far

@@ -23,26 +23,21 @@ std::vector<PriorEvidence> evidence_from(Smoother& smoother, int first) {
   std::vector<PriorEvidence> result;
   const FactorGraph& graph = smoother.graph();
   for (const PairMatrix& joint : smoother.chain_covariances(first)) {
-    const std::size_t k = index(first) + result.size();
-    result.push_back(evidence_of(graph.interval(static_cast<int>(k)), joint, graph.qcs[k]));
+    const int k = first + static_cast<int>(result.size());
+    result.push_back(evidence_of(graph.interval(k), joint, graph.qcs[index(k)]));
   }
   return result;
 }
 
 }  // namespace
 
-namespace {
-
-/// For a motion prior with this number of orders.
-template <int Orders>
-PriorEvidence evidence(const GpInterval& interval, const PairMatrix& given, const Vector6& qc) {
-  constexpr int kState = 6 * Orders;
+PriorEvidence evidence_of(const GpInterval& interval, const PairMatrix& joint, const Vector6& qc) {
   const GpInterval::PriorJacobians jacobians = interval.prior_jacobians(interval.derivatives());
-  Eigen::Matrix<double, kState, 2 * kState> J;
+  const int orders = interval.prior().orders();
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 18, 36> J(6 * orders, 12 * orders);
   J << jacobians.J0, jacobians.J1;
-  const Eigen::Matrix<double, 2 * kState, 2 * kState> joint = given;
-  const Eigen::Matrix<double, kState, kState> covariance = J * joint * J.transpose();
-  const Eigen::Matrix<double, kState, 1> e = interval.prior_residual();
+  const StateMatrix covariance = J * joint * J.transpose();
+  const StateVector e = interval.prior_residual();
   const Eigen::MatrixXd W = interval.prior_information_of_axis();
   PriorEvidence result;
   result.t = interval.t0() + 0.5 * interval.dt();
@@ -52,19 +47,13 @@ PriorEvidence evidence(const GpInterval& interval, const PairMatrix& given, cons
       result.square[i] += weight * e[i + 6 * c] * e[i + 6 * r];
       trace += weight * covariance(i + 6 * c, i + 6 * r);
     };
-    for (int r = 0; r < Orders; ++r) {
+    for (int r = 0; r < orders; ++r) {
       for (int c = 0; c < r; ++c) add(r, c, 2.0 * W(r, c));
     }
-    for (int r = 0; r < Orders; ++r) add(r, r, W(r, r));
-    result.freedom[i] = std::clamp(Orders - trace / qc[i], 0.0, 1.0 * Orders);
+    for (int r = 0; r < orders; ++r) add(r, r, W(r, r));
+    result.freedom[i] = std::clamp(orders - trace / qc[i], 0.0, 1.0 * orders);
   }
   return result;
-}
-
-}  // namespace
-
-PriorEvidence evidence_of(const GpInterval& interval, const PairMatrix& joint, const Vector6& qc) {
-  return interval.prior().has_acceleration() ? evidence<3>(interval, joint, qc) : evidence<2>(interval, joint, qc);
 }
 
 void PriorEvidence::add(const PriorEvidence& other, double window) {

@@ -9,7 +9,7 @@ namespace evbench::gp_map {
 void PlacementOptions::declare(OptionSet& set) {
   set.add("rule", rule, {"rate", "observations", "motion", "prediction"},
           "rate: evenly in time; observations: after a number of observations; motion: when the tracks have moved; "
-          "prediction: when the landmarks are seen off their prediction with constant velocity");
+          "prediction: when the landmarks are seen off what the motion prior predicts");
   set.add("rate", rate, "rule \"rate\": control states per second [Hz]").range(0.5, 1000.0);
   set.add("observations", observations, "rule \"observations\": observations between two control states").range(1);
   set.add("motion", motion,

@@ -10,7 +10,7 @@
 namespace evbench::smoother::testing {
 
 /// The largest difference over all control states between an estimate and the batch solver's optimum, in standard
-/// deviations: of one component of pose or velocity, and whitened by the state's covariance (a norm of 12).
+/// deviations: of one component of the state, and whitened by its covariance (a norm).
 struct OracleDistance {
   double component = 0.0;
   double whitened = 0.0;
