@@ -45,8 +45,8 @@ struct Basis {
   double dt = 1.0;
   double square = 0.0;  ///< (α Δt)²
   int terms = 1;        ///< of the series
-  Matrix3 from_end =
-      Matrix3::Zero();  ///< (p_3, p_4, p_5) coefficients from what the motion lacks in (x, x', x'') at Δt
+  /// Coefficients of (p_3, p_4, p_5) from what the motion lacks in (x, x', x'') at Δt.
+  Matrix3 from_end = Matrix3::Zero();
   Basis() = default;
   Basis(double dt, double rate);
 };
