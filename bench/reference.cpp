@@ -50,7 +50,11 @@ std::optional<double> number_at(const std::vector<std::string>& record,
   return std::strtod(record[found->second].c_str(), nullptr);
 }
 
-std::string name_of(const std::string& label, const std::string& seed) {
+/// A run's name among those of its experiment: label, values of a sweep's axes, seed.
+std::string name_of(std::string label, const RunAxes& axes, const std::string& seed) {
+  for (const auto& [axis, value] : axes) {
+    if (axis != "seed" && value != label) label += fmt::format(", {} {}", axis, value);
+  }
   return seed.empty() ? label : fmt::format("{}, seed {}", label, seed);
 }
 
@@ -63,12 +67,16 @@ std::string compare_with_reference(std::span<const RunRecord> runs, const std::s
   if (!columns.contains("label") || !columns.contains("seed")) {
     throw InputError(fmt::format("{}: has no columns label and seed; expected a table of runs in CSV", csv));
   }
+  RunAxes axes;  // of the runs, with the values of a line
+  if (!runs.empty()) axes = runs.front().axes;
+  std::erase_if(axes, [&](const auto& axis) { return !columns.contains(axis.first); });
   std::map<std::string, std::vector<std::string>> records;
   for (auto record = next_record(file); !record.empty(); record = next_record(file)) {
     if (record.size() != columns.size()) {
       throw InputError(fmt::format("{}: a line has {} cells, expected {}", csv, record.size(), columns.size()));
     }
-    records[name_of(record[columns["label"]], record[columns["seed"]])] = record;
+    for (auto& [axis, value] : axes) value = record[columns[axis]];
+    records[name_of(record[columns["label"]], axes, record[columns["seed"]])] = record;
   }
   std::size_t known = 0;
   struct Worst {
@@ -77,7 +85,7 @@ std::string compare_with_reference(std::span<const RunRecord> runs, const std::s
   };
   std::map<std::string, Worst> worst;
   for (const RunRecord& run : runs) {
-    const std::string name = name_of(run.label, run.seed ? fmt::format("{}", *run.seed) : "");
+    const std::string name = name_of(run.label, run.axes, run.seed ? fmt::format("{}", *run.seed) : "");
     const auto found = records.find(name);
     if (found == records.end()) continue;
     ++known;

@@ -11,6 +11,7 @@
 #include "bench/commands/exit_code.hpp"
 #include "bench/commands/failures.hpp"
 #include "bench/commands/name_check.hpp"
+#include "bench/commands/reference_experiments.hpp"
 #include "bench/commands/run.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/published.hpp"
@@ -26,8 +27,20 @@ namespace {
 struct ReproduceArguments {
   std::vector<std::string> names;
   std::string configs, format = "text";
+  bool reference = false;
+  int jobs = 0;
   RunArguments run;
 };
+
+/// The names asked for, or all. Throws InputError for one that is not known in `place`.
+std::vector<std::string> chosen(const std::vector<std::string>& asked, const std::vector<std::string>& known,
+                                const std::string& place, const char* kind) {
+  for (const std::string& name : asked) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    throw InputError(fmt::format("{} has no {} \"{}\"{}", place, kind, name, suggestion(name, known)));
+  }
+  return asked.empty() ? known : asked;
+}
 
 /// All configs of the folder by name, or those asked for.
 std::vector<std::string> find_configs(const ReproduceArguments& arguments) {
@@ -37,11 +50,7 @@ std::vector<std::string> find_configs(const ReproduceArguments& arguments) {
     if (entry.path().extension() == ".json" && name != "published") known.push_back(name);
   }
   std::ranges::sort(known, natural_less);
-  for (const std::string& name : arguments.names) {
-    if (std::ranges::find(known, name) != known.end()) continue;
-    throw InputError(fmt::format("{} has no config \"{}\"{}", arguments.configs, name, suggestion(name, known)));
-  }
-  return arguments.names.empty() ? known : arguments.names;
+  return chosen(arguments.names, known, arguments.configs, "config");
 }
 
 /// The runs of each sequence of the benchmark beside other systems' numbers.
@@ -69,7 +78,33 @@ void print_differences(const std::vector<std::string>& names, const std::vector<
   }
 }
 
+/// The experiments of the reference results, each with how far it is from the committed numbers.
+int reproduce_reference(const ReproduceArguments& arguments) {
+  const std::vector<ReferenceExperiment> experiments = read_reference_experiments(kReferenceExperiments);
+  std::vector<std::string> known;
+  for (const ReferenceExperiment& experiment : experiments) known.push_back(experiment.name);
+  std::vector<std::string> failures;
+  int exit_code = kExitDone;
+  for (const std::string& name : chosen(arguments.names, known, kReferenceExperiments, "experiment")) {
+    const ReferenceExperiment& experiment = *std::ranges::find(experiments, name, &ReferenceExperiment::name);
+    fmt::print("== {}\n", name);
+    try {
+      exit_code = std::max(exit_code, run_reference_experiment(experiment, arguments.jobs));
+      std::error_code error;
+      if (!fs::is_regular_file(experiment.csv(), error)) continue;
+      std::vector<RunRecord> runs = find_runs(std::vector{"results/" + name});
+      std::erase_if(runs, [](const RunRecord& run) { return !run.done; });
+      fmt::print("{}: {}\n", name, compare_with_reference(runs, experiment.csv()));
+    } catch (const InputError& error) {  // the other experiments are run all the same
+      failures.push_back(fmt::format("{}: {}", name, error.what()));
+    }
+  }
+  throw_together(failures);
+  return exit_code;
+}
+
 int execute(ReproduceArguments& arguments, Plugins& plugins) {
+  if (arguments.reference) return reproduce_reference(arguments);
   arguments.configs = find_paper_configs(arguments.configs);
   const std::vector<std::string> names = find_configs(arguments);
   const Published published = read_published(arguments.configs + "/published.json");
@@ -108,12 +143,21 @@ void add_reproduce(CLI::App& app, Plugins& plugins, int& exit_code) {
       app.add_subcommand("reproduce", "Run the paper's experiments, and compare the results with the published ones");
   command->add_option("names", arguments->names, "Configs by name, e.g. table1_simulated; none: all")
       ->type_name("NAME");
+  CLI::Option* reference = command->add_flag(
+      "--reference", arguments->reference,
+      fmt::format("Instead the experiments of this repository's reference results ({}), in results/NAME, and how far "
+                  "the new numbers are from the committed ones",
+                  kReferenceExperiments));
+  command->add_option("-j,--jobs", arguments->jobs, "--reference: runs at a time; by default one per processor")
+      ->check(CLI::Range(1, 4096))
+      ->needs(reference);
   command
       ->add_option("--configs", arguments->configs,
                    "Folder with the configs, and published.json with the numbers; by default configs/paper here, or "
                    "where evbench is installed")
-      ->type_name("DIR");
-  command->add_option("--out", arguments->run.out, "Folder for results")->capture_default_str();
+      ->type_name("DIR")
+      ->excludes(reference);
+  command->add_option("--out", arguments->run.out, "Folder for results")->capture_default_str()->excludes(reference);
   add_overrides(*command, arguments->run.overrides, "Override a value of all configs: KEY=VALUE, e.g. seed=3");
   command->add_option("--format", arguments->format, "Format of the table")
       ->check(one_of({"text", "markdown", "csv", "latex"}))

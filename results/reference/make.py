@@ -11,11 +11,11 @@
                                                               made with other versions of plugins than the program has
 
 An experiment is a name, the commands that run it into results/NAME, and the pages with its tables. A page has a table
-between <!-- made by: evbench table ... --> (or evbench compare) and <!-- end -->, without its notes where the command ends
-with "; without notes". <!-- made by: evbench figure ... --> makes a picture. A page may have tables of several
+between <!-- made by: evbench table ... --> (or compare, eval-tracks) and <!-- end -->, without its notes where the command
+ends with "; without notes". <!-- made by: evbench figure ... --> makes a picture. A page may have tables of several
 experiments: a table belongs to those whose results/NAME is in its command.
 
-EVBENCH_EVENTS is the folder of simulated events that several experiments share; by default results/events.
+evbench reproduce --reference runs the experiments. EVBENCH_EVENTS is the folder of simulated events that several experiments share; by default results/events.
 """
 
 import argparse
@@ -32,23 +32,17 @@ import sys
 
 REFERENCE = pathlib.Path(__file__).resolve().parent
 ROOT = REFERENCE.parent.parent
-BLOCK = re.compile(r"(<!-- made by: (evbench (?:table|compare) [^\n]*?)(; without notes)? -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- made by: (evbench (?:table|compare|eval-tracks) [^\n]*?)(; without notes)? -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 FIGURE = re.compile(r"<!-- made by: (evbench figure .*?) -->")
 
 
 def experiments():
-    return json.loads((REFERENCE / "experiments.json").read_text())
-
-
-def commands(experiment):
-    command = experiment["command"]
-    return [command] if isinstance(command, str) else command
+    return json.loads((REFERENCE / "experiments.json").read_text())["experiments"]
 
 
 def run(program, command, **more):
-    """Runs `evbench ...` in the root of the repository; environment variables in it are replaced."""
-    words = [os.path.expandvars(word) for word in shlex.split(command)]
-    return subprocess.run([program, *words[1:]], cwd=ROOT, check=True, **more)
+    """Runs `evbench ...` in the root of the repository."""
+    return subprocess.run([program, *shlex.split(command)[1:]], cwd=ROOT, check=True, **more)
 
 
 def output(program, command):
@@ -76,17 +70,11 @@ def run_experiment(program, experiment, folder, jobs):
     record = folder / "processor_s.txt"
     before = float(record.read_text()) if record.exists() else 0
     begin = processor_time()
+    words = [program, "reproduce", "--reference", experiment["name"], *(["-j", str(jobs)] if jobs else [])]
     try:
-        for command in commands(experiment):
-            print(f"== {experiment['name']}: {command}", flush=True)
-            words = [os.path.expandvars(word) for word in shlex.split(command)]
-            if words[0] == "evbench":
-                words[0] = program
-            if words[1] == "sweep" and jobs:
-                words += ["-j", str(jobs)]
-            result = subprocess.run(words, cwd=ROOT)
-            if result.returncode not in (0, 3):  # 3: runs failed, which the tables show
-                raise SystemExit(f"{experiment['name']}: {command} ended with {result.returncode}")
+        result = subprocess.run(words, cwd=ROOT)
+        if result.returncode not in (0, 3):  # 3: runs failed, which the tables show
+            raise SystemExit(f"{experiment['name']}: ended with {result.returncode}")
     finally:
         spent = before + processor_time() - begin
         if folder.exists():
@@ -131,7 +119,7 @@ def digest(text):
 
 
 def belongs_to(name, command):
-    return f"results/{name}" in command.split()
+    return any(word == f"results/{name}" or word.startswith(f"results/{name}/") for word in command.split())
 
 
 def fill(program, page, name):
@@ -157,7 +145,6 @@ def digests(text, name):
 
 
 def make(program, names, jobs, only_run):
-    os.environ.setdefault("EVBENCH_EVENTS", str(ROOT / "results" / "events"))
     for experiment in experiments():
         name = experiment["name"]
         if names and name not in names:
@@ -227,7 +214,7 @@ def main():
             record = REFERENCE / f"{experiment['name']}.manifest.json"
             known = json.loads(record.read_text()).get("processor_s", "?") if record.exists() else None
             spent = f"{known} s" if known else "never made"
-            print(f"{experiment['name']:<28} {spent:<12} {'; '.join(commands(experiment))}")
+            print(f"{experiment['name']:<28} {spent:<12} {'; '.join(experiment['commands'])}")
         return 0
     program = str(pathlib.Path(arguments.evbench).resolve())
     if arguments.check:
