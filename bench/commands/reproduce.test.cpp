@@ -1,4 +1,5 @@
 #include <map>
+#include <sstream>
 
 #include "bench/published.hpp"
 #include "bench/testing/program.hpp"
@@ -93,6 +94,49 @@ TEST_CASE("Unknown configs and damaged numbers are errors that name the place", 
   CHECK_THAT(testing::evbench(paper.folder, "reproduce").err,
              ContainsSubstring("configs/paper: there is no such folder here") &&
                  ContainsSubstring("--configs REPOSITORY/configs/paper"));
+}
+
+TEST_CASE("Experiments of the reference results are run, and compared run by run with the committed numbers",
+          "[slow]") {
+  const Paper paper;
+  const auto reproduce = [&](const std::string& arguments) {
+    return testing::evbench(paper.folder, "reproduce --reference " + arguments);
+  };
+  CHECK_THAT(reproduce("arm").err, ContainsSubstring("results/reference/experiments.json: there is no such file here"));
+
+  std::filesystem::create_directories(paper.folder.file("results/reference"));
+  const Json arm = {{"name", "arm"},
+                    {"commands", {"evbench sweep paper/arm.json --vary pipeline.interval=0.01,0.02 --quiet"}}};
+  const Json unset = {{"name", "unset"}, {"needs", {"EVBENCH_NOT_SET"}}, {"commands", {"false"}}};
+  const Json broken = {{"name", "broken"}, {"commands", {"exit 7"}}};
+  paper.folder.write("results/reference/experiments.json", dump_json({{"experiments", {arm, unset, broken}}}));
+  CHECK_THAT(reproduce("arn").err, ContainsSubstring("has no experiment \"arn\"; did you mean \"arm\"?"));
+  CHECK_THAT(reproduce("unset").err, ContainsSubstring("unset: the environment variable EVBENCH_NOT_SET is not set"));
+  CHECK_THAT(reproduce("broken").err, ContainsSubstring("broken: \"exit 7\" ended with 7"));
+
+  REQUIRE(reproduce("arm -j 1").exit_code == 0);
+  const Outcome made =
+      testing::evbench(paper.folder, "table results/arm --format csv --all --out results/reference/arm.csv");
+  INFO(made.err);
+  REQUIRE(made.exit_code == 0);
+  CHECK_THAT(reproduce("arm").out,
+             ContainsSubstring("arm: 4 of 4 runs are in results/reference/arm.csv. ATE [m]: within 0 %"));
+
+  // Another number in the line of one value of the axis.
+  std::istringstream lines(read_file(paper.folder.file("results/reference/arm.csv")));
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("arm,asynchronous,0.02,")) {
+      const std::size_t ate = line.find("gp_map-");
+      REQUIRE(ate != std::string::npos);
+      const std::size_t begin = line.find(',', ate) + 1, end = line.find(',', begin);
+      line.replace(begin, end - begin, fmt::format("{}", 0.5 * std::stod(line.substr(begin, end - begin))));
+    }
+    text += line + "\n";
+  }
+  paper.folder.write("results/reference/arm.csv", text);
+  CHECK_THAT(reproduce("arm").out,
+             ContainsSubstring("ATE [m]: within 1e+02 % (asynchronous, pipeline.interval 0.02, seed 1)."));
 }
 
 TEST_CASE("An installed program finds the installed configs", "[slow]") {

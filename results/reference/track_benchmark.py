@@ -13,7 +13,8 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 FOLDER = pathlib.Path("results/track_benchmark")
-TRACKERS = ["correlation", "haste_correlation", "haste_correlation_star", "haste_difference", "haste_difference_star", "str"]
+TRACKERS = ["correlation", "haste_correlation", "haste_correlation_star", "haste_difference", "haste_difference_star", "poisson",
+            "str"]
 SEQUENCES = [("shapes", 0.4, 0), ("shapes", 0, 0.3), ("shapes", 0.3, 0.2), ("boxes", 0.4, 0), ("boxes", 0, 0.3)]
 
 
@@ -48,7 +49,7 @@ def main():
         lines["true"] += shifted(seeds, n)
         for tracker in TRACKERS:
             label = f"{scene}, translation {amplitude}, rotation {rotation}, {tracker}"
-            kind = {"frontend.type": "str"} if tracker == "str" else {"frontend.variant": tracker}
+            kind = {"frontend.type": tracker} if tracker in ("poisson", "str") else {"frontend.variant": tracker}
             made = subprocess.run(["evbench", "run", *config, *sequence, "--tracks", "--quiet",
                                    *settings({"backend.label": label, "frontend.seeds": str(seeds.resolve()), **kind})])
             if made.returncode not in (0, 3):  # 3: the back-end failed, which does not concern the tracks
