@@ -124,15 +124,15 @@ TEST_CASE("Experiments of the reference results are run, and compared run by run
 
   // Another number in the line of one value of the axis.
   std::istringstream lines(read_file(paper.folder.file("results/reference/arm.csv")));
-  std::string text;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("arm,asynchronous,0.02,")) {
-      const std::size_t ate = line.find("gp_map-");
-      REQUIRE(ate != std::string::npos);
-      const std::size_t begin = line.find(',', ate) + 1, end = line.find(',', begin);
-      line.replace(begin, end - begin, fmt::format("{}", 0.5 * std::stod(line.substr(begin, end - begin))));
-    }
-    text += line + "\n";
+  std::string line, text;
+  std::getline(lines, line);
+  const auto column = std::count(line.begin(), line.begin() + line.find("ate.trans_m.rmse"), ',');
+  for (text = line + "\n"; std::getline(lines, line); text += line + "\n") {
+    if (!line.starts_with("arm,asynchronous,0.02,")) continue;
+    std::size_t begin = 0;
+    for (auto i = column; i > 0; --i) begin = line.find(',', begin) + 1;
+    const std::size_t length = line.find(',', begin) - begin;
+    line.replace(begin, length, fmt::format("{}", 0.5 * std::stod(line.substr(begin, length))));
   }
   paper.folder.write("results/reference/arm.csv", text);
   CHECK_THAT(reproduce("arm").out,

@@ -51,7 +51,7 @@ def output(program, command):
 
 def runs_of(folder):
     """job.json and manifest.json of each run of an experiment."""
-    for path in sorted(folder.glob("*/manifest.json")):
+    for path in sorted(folder.glob("**/manifest.json")):
         yield json.loads((path.parent / "job.json").read_text()), json.loads(path.read_text())
 
 
