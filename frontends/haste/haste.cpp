@@ -108,7 +108,7 @@ void Haste::observe(const Change& change) {
       return;
     } else {
       lost_.forget(track.id);
-      ++(track.at_corner ? at_corners_ : by_template_).went_on;
+      ++by_template_.went_on;
     }
   }
   if (track.displaced && is_as_expected(track.id, z.pixel, z.t)) {
@@ -149,7 +149,7 @@ void Haste::correct_guidance() {
   guidance_.correct(sightings);
 }
 
-/// Detects new features where there are too few; some of them are lost landmarks.
+/// Detects new features where there are too few.
 void Haste::replenish() {
   const auto wanted = static_cast<std::size_t>(options_.tracks);
   if (trackers_.size() >= wanted || 5 * recent_.events().size() < static_cast<std::size_t>(options_.detection.events)) {
@@ -159,14 +159,8 @@ void Haste::replenish() {
   const auto features = detect_features(options_.detection, recent_.events(), camera_.width, camera_.height,
                                         tracked().places, wanted - trackers_.size());
   for (const Vector2& pixel : features) {
-    Tracker tracker(options_.tracker, {0, pixel, 0.0});
-    if (const std::optional<TrackId> landmark = lost_landmark_at(pixel)) {
-      ++at_corners_.found;
-      begin(std::move(tracker), {*landmark, odometer_, pixel, options_.guidance.probation, true});
-    } else {
-      ++begun_;
-      begin(std::move(tracker), {next_id_++, odometer_, pixel});
-    }
+    ++begun_;
+    begin(Tracker(options_.tracker, {0, pixel, 0.0}), {next_id_++, odometer_, pixel});
   }
 }
 
@@ -198,19 +192,17 @@ void Haste::receive(const Feedback& feedback) {
 
 std::vector<std::string> Haste::counts() const {
   const auto ended = [&](End why) { return ended_[index(static_cast<int>(why))]; };
-  return {
-      fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
-      fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} along an edge, "
-                  "{} starved, {} crowded, {} far from where they were expected, {} as outliers, {} erratic, "
-                  "{} mismatched after a silence",
-                  ended(End::border), ended(End::spread), ended(End::edge), ended(End::starvation),
-                  ended(End::crowding), ended(End::veto), ended(End::outlier), ended(End::erratic),
-                  ended(End::silence)),
-      fmt::format("{} landmarks re-acquired by template, of which {} were confirmed; {} at corners, of which {} were "
-                  "confirmed; {} displaced together; {} recognised after tracking was lost",
-                  by_template_.found, by_template_.went_on, at_corners_.found, at_corners_.went_on, begun_displaced_,
-                  ended(End::recognised)),
-      fmt::format("{} observations came later than the delay", late_)};
+  return {fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
+          fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} along an edge, "
+                      "{} starved, {} crowded, {} far from where they were expected, {} as outliers, {} erratic, "
+                      "{} mismatched after a silence",
+                      ended(End::border), ended(End::spread), ended(End::edge), ended(End::starvation),
+                      ended(End::crowding), ended(End::veto), ended(End::outlier), ended(End::erratic),
+                      ended(End::silence)),
+          fmt::format("{} landmarks re-acquired by template, of which {} were confirmed; {} displaced together; "
+                      "{} recognised after tracking was lost",
+                      by_template_.found, by_template_.went_on, begun_displaced_, ended(End::recognised)),
+          fmt::format("{} observations came later than the delay", late_)};
 }
 
 }  // namespace evbench::haste

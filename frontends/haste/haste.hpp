@@ -42,7 +42,6 @@ class Haste : public EventFrontEnd {
     double odometer;                     ///< value of odometer_ when the tracker last changed its state [px]
     Vector2 pixel = Vector2::Zero();     ///< newest position [px]
     int probation = 0;                   ///< changes of state until a re-acquired landmark's track goes on
-    bool at_corner = false;              ///< it was re-acquired as a corner, not by its template
     bool displaced = false;              ///< re-acquired off its expected position; not back there yet
     double reported = -kInfinity;        ///< [s] time of its last observation
     double found = -kInfinity;           ///< [s] when the tracker was last confirmed to follow something
@@ -80,7 +79,6 @@ class Haste : public EventFrontEnd {
   void reacquire();
   void reacquire_displaced();
   void recognise();
-  std::optional<TrackId> lost_landmark_at(const Vector2& corner) const;
   LostLandmarks::Tracked tracked() const;
 
   Options options_;
@@ -100,7 +98,7 @@ class Haste : public EventFrontEnd {
   std::array<std::size_t, static_cast<std::size_t>(End::recognised) + 1> ended_{};  ///< by End
   struct Finds {
     std::size_t found = 0, went_on = 0;
-  } by_template_, at_corners_;
+  } by_template_;
   std::size_t begun_ = 0, begun_displaced_ = 0, late_ = 0;
 };
 

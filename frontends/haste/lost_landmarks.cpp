@@ -31,13 +31,6 @@ void LostLandmarks::forget_before(double t) {
 void LostLandmarks::disappoint(TrackId track, double t) {
   constexpr double kPause = 0.5;  // [s]
   if (const auto lost = lost_.find(track); lost != lost_.end()) lost->second.tried = t + kPause;
-  std::erase_if(left_alone_, [&](const auto& entry) { return entry.second <= t; });
-  left_alone_[track] = t + kPause;
-}
-
-bool LostLandmarks::is_left_alone(TrackId track, double t) const {
-  const auto entry = left_alone_.find(track);
-  return entry != left_alone_.end() && t < entry->second;
 }
 
 std::vector<LostLandmarks::Candidate> LostLandmarks::expected_in_view(const Guidance& guidance, double t,
@@ -167,23 +160,6 @@ std::optional<LostLandmarks::Found> LostLandmarks::recognise(const Vector2& abou
   const auto found = haste::recognise(looks, window_at(about, recent), about, options_.recognition);
   if (!found) return std::nullopt;
   return Found{found->track, found->pixel, lost_.at(found->track).look.warped(found->angle, 1.0)};
-}
-
-std::optional<TrackId> LostLandmarks::at_corner(const Vector2& corner, const Guidance& guidance, double t,
-                                                const Tracked& tracked) const {
-  constexpr double kPlace = 0.5;  // [px] between a detected corner and the tracked point
-  std::optional<TrackId> result;
-  for (const auto& [track, feature] : guidance.expected()) {
-    const std::optional<Guidance::Prediction> expected = guidance.predict(track, t);
-    if (!expected || tracked.has(track)) continue;
-    const Vector2 offset = corner - expected->pixel;
-    const Matrix2 covariance = expected->covariance + kPlace * kPlace * Matrix2::Identity();
-    const double distance = std::sqrt(offset.dot(covariance.inverse() * offset));
-    if (!(offset.norm() <= options_.search && distance <= options_.gate)) continue;
-    if (result) return std::nullopt;
-    result = track;
-  }
-  return result && !is_left_alone(*result, t) ? result : std::nullopt;
 }
 
 }  // namespace evbench::haste

@@ -12,8 +12,8 @@
 
 namespace evbench::haste {
 
-/// Re-acquires landmarks whose trackers have ended. Searches where the back-end expects them: by the template that the
-/// tracker had or, where there is none or it is not found, as corners.
+/// Re-acquires landmarks whose trackers have ended. Searches where the back-end expects them, by the template that the
+/// tracker had.
 class LostLandmarks {
  public:
   explicit LostLandmarks(const GuidanceOptions& options) : options_(options) {}
@@ -30,8 +30,7 @@ class LostLandmarks {
   void forget_world(std::size_t world) {
     std::erase_if(lost_, [&](const auto& entry) { return entry.second.world == world; });
   }
-  /// Backs off after a re-acquired landmark turned out to be another one: it is not searched for during a pause. It
-  /// need not be stored.
+  /// Backs off after a re-acquired landmark turned out to be another one: it is not searched for during a pause.
   void disappoint(TrackId track, double t);
 
   /// A landmark that is re-acquired.
@@ -61,10 +60,6 @@ class LostLandmarks {
   std::optional<Found> recognise(const Vector2& about, std::size_t world, const RecentEvents& recent, double t,
                                  const Tracked& tracked);
 
-  /// The untracked landmark that is expected at a corner [px] detected at t. None where two are expected there.
-  std::optional<TrackId> at_corner(const Vector2& corner, const Guidance& guidance, double t,
-                                   const Tracked& tracked) const;
-
  private:
   struct Lost {
     double t;      ///< [s] when it was lost
@@ -85,14 +80,12 @@ class LostLandmarks {
   std::vector<Candidate> expected_in_view(const Guidance& guidance, double t, const Tracked& tracked,
                                           const Camera& camera) const;
   Found as_expected(TrackId track, const Lost& lost, const Guidance& guidance, double t) const;
-  bool is_left_alone(TrackId track, double t) const;
   std::optional<Found> look_for(TrackId track, const Lost& lost, const Guidance& guidance, const Vector2& about,
                                 const RecentEvents& recent) const;
 
   GuidanceOptions options_;
   std::map<TrackId, Lost> lost_;
-  double next_displaced_ = 0.0;           ///< [s] time of the next search for displaced ones
-  std::map<TrackId, double> left_alone_;  ///< no corner is associated with it until then [s]
+  double next_displaced_ = 0.0;  ///< [s] time of the next search for displaced ones
 };
 
 }  // namespace evbench::haste

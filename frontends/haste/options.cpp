@@ -48,9 +48,6 @@ void GuidanceOptions::declare(OptionSet& set) {
       .range(1, 1000);
   set.add("tolerance", tolerance, "how far off its expected position it may be meanwhile [px]").above(0.0);
   set.add("memory", memory, "landmarks that were lost less than this ago are searched for [s]").range(0.0, 1e6);
-  set.add("corners", corners,
-          "a landmark that isn't found by its template, or has none, is taken to be the corner that is detected near "
-          "its expected place, on probation, if no other lost one is expected there; not without reacquire");
   set.add("degraded", degraded,
           "landmarks are also searched for while the back-end is degraded and a motion model carries the estimate");
 }

@@ -35,7 +35,6 @@ struct GuidanceOptions {
   int probation = 4;
   double tolerance = 3.0;
   double memory = 30.0;
-  bool corners = false;
   bool degraded = true;
 
   void declare(OptionSet& set);

@@ -4,8 +4,8 @@
 #include "core/events/event_time.hpp"
 #include "frontends/haste/haste.hpp"
 
-// Re-acquires landmarks whose trackers have ended: where they are expected, displaced together, by their template alone
-// after tracking is lost, or as a corner.
+// Re-acquires landmarks whose trackers have ended: where they are expected, displaced together, or by their template
+// alone after tracking is lost.
 namespace evbench::haste {
 
 /// Stores the track's template where the track is of a landmark.
@@ -65,13 +65,6 @@ void Haste::recognise() {
     begin(Tracker(options_.tracker, {0, found->pixel, 0.0}, found->look),
           {.id = found->track, .odometer = odometer_, .pixel = found->pixel, .looked_at = kTimes});
   }
-}
-
-/// Landmarks with a template were searched for by it before.
-std::optional<TrackId> Haste::lost_landmark_at(const Vector2& corner) const {
-  const std::span<const Event> window = window_at(corner, recent_);
-  if (!options_.guidance.reacquire || !options_.guidance.corners || window.empty()) return std::nullopt;
-  return lost_.at_corner(corner, guidance_, seconds(window[window.size() / 2].t), tracked());
 }
 
 LostLandmarks::Tracked Haste::tracked() const {

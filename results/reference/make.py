@@ -13,9 +13,11 @@
 An experiment is a name, the commands that run it into results/NAME, and the pages with its tables. A page has a table
 between <!-- made by: evbench table ... --> (or compare, eval-tracks) and <!-- end -->, without its notes where the command
 ends with "; without notes". <!-- made by: evbench figure ... --> makes a picture. A page may have tables of several
-experiments: a table belongs to those whose results/NAME is in its command.
+experiments: a table belongs to those whose results/NAME is in its command. Between <!-- made with --> and <!-- end -->
+is what its experiments were run with, from their manifests.
 
-evbench reproduce --reference runs the experiments. EVBENCH_EVENTS is the folder of simulated events that several experiments share; by default results/events.
+evbench reproduce --reference runs the experiments. EVBENCH_EVENTS is the folder of simulated events that several of them
+share; by default results/events.
 """
 
 import argparse
@@ -33,6 +35,7 @@ import sys
 REFERENCE = pathlib.Path(__file__).resolve().parent
 ROOT = REFERENCE.parent.parent
 BLOCK = re.compile(r"(<!-- made by: (evbench (?:table|compare|eval-tracks) [^\n]*?)(; without notes)? -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+PROVENANCE = re.compile(r"(<!-- made with -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 FIGURE = re.compile(r"<!-- made by: (evbench figure .*?) -->")
 
 
@@ -144,6 +147,38 @@ def digests(text, name):
     return [digest(block[3]) for block in BLOCK.findall(text) if belongs_to(name, block[1])]
 
 
+def ranges(numbers):
+    """1, 2, 3, 7 as "1 to 3, 7"."""
+    parts = []
+    for number in sorted(numbers):
+        if parts and number == parts[-1][1] + 1:
+            parts[-1][1] = number
+        else:
+            parts.append([number, number])
+    return ", ".join(str(a) if a == b else f"{a} to {b}" for a, b in parts)
+
+
+def provenance(page):
+    """A table of what the experiments of a page were run with."""
+    rows = ["| experiment | runs | seeds | evbench | plugins | processor | processor time | day |",
+            "| --- | ---: | --- | --- | --- | --- | ---: | --- |"]
+    for experiment in experiments():
+        record = REFERENCE / f"{experiment['name']}.manifest.json"
+        if page not in experiment["pages"] or not record.exists():
+            continue
+        made = json.loads(record.read_text())
+        plugins = ", ".join(f"{plugin.split()[1]} {version}" for plugin, version in made["plugins"].items())
+        rows.append(f"| `{made['experiment']}` | {made['runs']} | {ranges(made['seeds'])} | {', '.join(made['program'])} "
+                    f"({', '.join(made['commits'])}) | {plugins} | {'; '.join(made['hosts'])} | "
+                    f"{max(1, round(made['processor_s'] / 60))} min | {', '.join(made['days'])} |")
+    return "\n" + "\n".join(rows) + "\n\n"
+
+
+def fill_provenance(page):
+    text = (ROOT / page).read_text()
+    (ROOT / page).write_text(PROVENANCE.sub(lambda block: block[1] + provenance(page) + block[3], text))
+
+
 def make(program, names, jobs, only_run):
     for experiment in experiments():
         name = experiment["name"]
@@ -162,6 +197,8 @@ def make(program, names, jobs, only_run):
         made["csv"] = digest((REFERENCE / f"{name}.csv").read_text())
         made["tables"] = {page: fill(program, ROOT / page, name) for page in experiment["pages"]}
         (REFERENCE / f"{name}.manifest.json").write_text(json.dumps(made, indent=1) + "\n")
+        for page in experiment["pages"]:
+            fill_provenance(page)
 
 
 def present_versions(program):
@@ -194,6 +231,9 @@ def check(program):
                               f"{now.get(plugin, 'none')}; results/reference/make.py {experiment['name']}")
         if digest((REFERENCE / f"{experiment['name']}.csv").read_text()) != made["csv"]:
             faults.append(f"{experiment['name']}.csv is not as it was made")
+    for page in sorted(pages):
+        if any(block[2] != provenance(page) for block in PROVENANCE.finditer((ROOT / page).read_text())):
+            faults.append(f"{page}: what it was made with is not as its manifests say")
     for fault in faults:
         print(fault)
     print(f"{len(pages)} pages of reference results, {len(faults)} faults")
