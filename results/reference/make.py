@@ -158,6 +158,10 @@ def ranges(numbers):
     return ", ".join(str(a) if a == b else f"{a} to {b}" for a, b in parts)
 
 
+def minutes(made):
+    return f"{max(1, round(made['processor_s'] / 60))} min" if "processor_s" in made else ""
+
+
 def provenance(page):
     """A table of what the experiments of a page were run with."""
     rows = ["| experiment | runs | seeds | evbench | plugins | processor | processor time | day |",
@@ -170,7 +174,7 @@ def provenance(page):
         plugins = ", ".join(f"{plugin.split()[1]} {version}" for plugin, version in made["plugins"].items())
         rows.append(f"| `{made['experiment']}` | {made['runs']} | {ranges(made['seeds'])} | {', '.join(made['program'])} "
                     f"({', '.join(made['commits'])}) | {plugins} | {'; '.join(made['hosts'])} | "
-                    f"{max(1, round(made['processor_s'] / 60))} min | {', '.join(made['days'])} |")
+                    f"{minutes(made)} | {', '.join(made['days'])} |")
     return "\n" + "\n".join(rows) + "\n\n"
 
 
