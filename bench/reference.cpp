@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -51,7 +53,8 @@ std::optional<double> number_at(const std::vector<std::string>& record,
 }
 
 /// A run's name among those of its experiment: label, values of a sweep's axes, seed.
-std::string name_of(std::string label, const RunAxes& axes, const std::string& seed) {
+std::string name_of(std::string label, RunAxes axes, const std::string& seed) {
+  std::ranges::sort(axes);
   for (const auto& [axis, value] : axes) {
     if (axis != "seed" && value != label) label += fmt::format(", {} {}", axis, value);
   }
@@ -67,16 +70,22 @@ std::string compare_with_reference(std::span<const RunRecord> runs, const std::s
   if (!columns.contains("label") || !columns.contains("seed")) {
     throw InputError(fmt::format("{}: has no columns label and seed; expected a table of runs in CSV", csv));
   }
-  RunAxes axes;  // of the runs, with the values of a line
-  if (!runs.empty()) axes = runs.front().axes;
-  std::erase_if(axes, [&](const auto& axis) { return !columns.contains(axis.first); });
+  std::set<std::string> axes;  // of the runs that are columns; not every run of a sweep has all
+  for (const RunRecord& run : runs) {
+    for (const auto& [axis, value] : run.axes) {
+      if (columns.contains(axis)) axes.insert(axis);
+    }
+  }
   std::map<std::string, std::vector<std::string>> records;
   for (auto record = next_record(file); !record.empty(); record = next_record(file)) {
     if (record.size() != columns.size()) {
       throw InputError(fmt::format("{}: a line has {} cells, expected {}", csv, record.size(), columns.size()));
     }
-    for (auto& [axis, value] : axes) value = record[columns[axis]];
-    records[name_of(record[columns["label"]], axes, record[columns["seed"]])] = record;
+    RunAxes place;
+    for (const std::string& axis : axes) {
+      if (const std::string& value = record[columns[axis]]; !value.empty()) place.emplace_back(axis, value);
+    }
+    records[name_of(record[columns["label"]], std::move(place), record[columns["seed"]])] = record;
   }
   std::size_t known = 0;
   struct Worst {
