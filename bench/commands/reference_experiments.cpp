@@ -4,11 +4,14 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 
 #include "bench/commands/exit_code.hpp"
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 #include "eval/json_file.hpp"
 #include "eval/record_reader.hpp"
 
@@ -48,14 +51,15 @@ std::vector<ReferenceExperiment> read_reference_experiments(const std::string& p
 
 int run_reference_experiment(const ReferenceExperiment& experiment, int jobs) {
   for (const std::string& variable : experiment.needs) {
-    if (std::getenv(variable.c_str()) == nullptr) {  // NOLINT(concurrency-mt-unsafe): one thread
+    const char* const value = std::getenv(variable.c_str());  // NOLINT(concurrency-mt-unsafe): one thread
+    if (value == nullptr || *value == '\0') {
       throw InputError(fmt::format("the environment variable {} is not set", variable));
     }
   }
-  const std::string program = fs::read_symlink("/proc/self/exe").parent_path();
-  const char* const path = std::getenv("PATH");                                // NOLINT(concurrency-mt-unsafe)
-  setenv("PATH", fmt::format("{}:{}", program, path ? path : "").c_str(), 1);  // NOLINT(concurrency-mt-unsafe)
-  setenv("EVBENCH_EVENTS", fs::absolute("results/events").c_str(), 0);         // NOLINT(concurrency-mt-unsafe)
+  const std::string program = fs::read_symlink("/proc/self/exe").parent_path();  // first in PATH
+  const char* const path = std::getenv("PATH");                                  // NOLINT(concurrency-mt-unsafe)
+  setenv("PATH", fmt::format("{}:{}", program, path ? path : "").c_str(), 1);    // NOLINT(concurrency-mt-unsafe)
+  setenv("EVBENCH_EVENTS", fs::absolute("results/events").c_str(), 0);           // NOLINT(concurrency-mt-unsafe)
   int worst = kExitDone;
   for (std::string command : experiment.commands) {
     if (jobs > 0 && command.starts_with("evbench sweep ")) command += fmt::format(" -j {}", jobs);
@@ -63,7 +67,12 @@ int run_reference_experiment(const ReferenceExperiment& experiment, int jobs) {
     std::fflush(stdout);
     const int status = std::system(command.c_str());  // NOLINT: the commands are the repository's own
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    if (code != kExitDone && code != kExitFailed) throw InputError(fmt::format("\"{}\" ended with {}", command, code));
+    const std::string message = fmt::format("\"{}\" ended with {}", command, code);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+      if (code == 128 + signal) throw Interrupted(message, signal);
+    }
+    if (code == kExitNotWritten) throw OutputError(message);
+    if (code != kExitDone && code != kExitFailed) throw InputError(message);
     worst = std::max(worst, code);
   }
   return worst;

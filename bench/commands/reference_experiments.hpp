@@ -14,9 +14,6 @@ struct ReferenceExperiment {
   std::string name;
   std::vector<std::string> commands;
   std::vector<std::string> needs;  ///< environment variables that must be set
-
-  /// Where its results are: a CSV of `evbench table` with a row per run.
-  std::string csv() const { return "results/reference/" + name + ".csv"; }
 };
 
 /// All experiments, in the order of the file. Throws InputError for a file that is not there or damaged.
@@ -24,7 +21,8 @@ std::vector<ReferenceExperiment> read_reference_experiments(const std::string& p
 
 /// Runs the commands, "evbench" in them being this program, with `jobs` runs at a time (0: as many as sweeps do).
 /// Returns the worst exit code: a command that ends with kExitFailed, because runs failed, does not keep the others
-/// from running. Throws InputError where a variable is not set or a command ends in another way.
+/// from running. Throws Interrupted where a command was asked to end, OutputError where it can't write, and InputError
+/// where a variable is not set or a command ends in another way.
 int run_reference_experiment(const ReferenceExperiment& experiment, int jobs);
 
 }  // namespace evbench

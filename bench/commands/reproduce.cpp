@@ -65,17 +65,12 @@ void print_sequences(const PublishedBenchmark& benchmark, const std::vector<RunR
   }
 }
 
-/// How far the runs of each experiment are from the results in this repository.
-void print_differences(const std::vector<std::string>& names, const std::vector<RunRecord>& runs) {
-  for (const std::string& name : names) {
-    const std::string csv = fmt::format("results/reference/{}.csv", name);
-    std::vector<RunRecord> of_one;
-    std::ranges::copy_if(runs, std::back_inserter(of_one),
-                         [&](const RunRecord& run) { return run.experiment == name; });
-    std::error_code error;
-    if (of_one.empty() || !fs::is_regular_file(csv, error)) continue;
-    fmt::print("\n{}: {}\n", name, compare_with_reference(of_one, csv));
-  }
+/// How far these runs of an experiment are from the results in this repository, if it has any.
+void print_difference(const std::string& name, const std::vector<RunRecord>& runs) {
+  const std::string csv = fmt::format("results/reference/{}.csv", name);
+  std::error_code error;
+  if (runs.empty() || !fs::is_regular_file(csv, error)) return;
+  fmt::print("\n{}: {}\n", name, compare_with_reference(runs, csv));
 }
 
 /// The experiments of the reference results, each with how far it is from the committed numbers.
@@ -90,11 +85,13 @@ int reproduce_reference(const ReproduceArguments& arguments) {
     fmt::print("== {}\n", name);
     try {
       exit_code = std::max(exit_code, run_reference_experiment(experiment, arguments.jobs));
-      std::error_code error;
-      if (!fs::is_regular_file(experiment.csv(), error)) continue;
       std::vector<RunRecord> runs = find_runs(std::vector{"results/" + name});
       std::erase_if(runs, [](const RunRecord& run) { return !run.done; });
-      fmt::print("{}: {}\n", name, compare_with_reference(runs, experiment.csv()));
+      print_difference(name, runs);
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const OutputError&) {
+      throw;
     } catch (const InputError& error) {  // the other experiments are run all the same
       failures.push_back(fmt::format("{}: {}", name, error.what()));
     }
@@ -130,7 +127,14 @@ int execute(ReproduceArguments& arguments, Plugins& plugins) {
   fmt::print("{}{}", arguments.run.quiet ? "" : "\n",
              published_table(published, runs, format, {.width = text_width()}));
   if (published.benchmark) print_sequences(*published.benchmark, runs, format);
-  if (!arguments.run.quiet && arguments.run.overrides.empty()) print_differences(names, runs);
+  if (!arguments.run.quiet && arguments.run.overrides.empty()) {
+    for (const std::string& name : names) {
+      std::vector<RunRecord> of_one;
+      std::ranges::copy_if(runs, std::back_inserter(of_one),
+                           [&](const RunRecord& run) { return run.experiment == name; });
+      print_difference(name, of_one);
+    }
+  }
   throw_together(failures);
   return exit_code;
 }
@@ -155,15 +159,17 @@ void add_reproduce(CLI::App& app, Plugins& plugins, int& exit_code) {
       ->add_option("--configs", arguments->configs,
                    "Folder with the configs, and published.json with the numbers; by default configs/paper here, or "
                    "where evbench is installed")
-      ->type_name("DIR")
-      ->excludes(reference);
-  command->add_option("--out", arguments->run.out, "Folder for results")->capture_default_str()->excludes(reference);
+      ->type_name("DIR");
+  command->add_option("--out", arguments->run.out, "Folder for results")->capture_default_str();
   add_overrides(*command, arguments->run.overrides, "Override a value of all configs: KEY=VALUE, e.g. seed=3");
   command->add_option("--format", arguments->format, "Format of the table")
       ->check(one_of({"text", "markdown", "csv", "latex"}))
       ->capture_default_str();
   command->add_flag("--force", arguments->run.force, "Repeat runs that are complete already");
   command->add_flag("--quiet", arguments->run.quiet, "Print nothing but the table and errors");
+  for (const char* option : {"--configs", "--out", "--set", "--format", "--force", "--quiet"}) {
+    command->get_option(option)->excludes(reference);
+  }
   command->footer(
       "Configs whose data are missing are left out and listed, with exit code 2; runs that are complete below OUT are\n"
       "not repeated.");

@@ -114,6 +114,13 @@ TEST_CASE("Experiments of the reference results are run, and compared run by run
   CHECK_THAT(reproduce("unset").err, ContainsSubstring("unset: the environment variable EVBENCH_NOT_SET is not set"));
   CHECK_THAT(reproduce("broken").err, ContainsSubstring("broken: \"exit 7\" ended with 7"));
 
+  CHECK_THAT(reproduce("arm --set seed=3").err, ContainsSubstring("excludes"));
+  const Json stopped = {{"name", "stopped"}, {"commands", {"exit 130"}}};
+  paper.folder.write("results/reference/experiments.json", dump_json({{"experiments", {stopped, arm}}}));
+  const Outcome interrupted = reproduce("");
+  CHECK(interrupted.exit_code == 130);
+  CHECK_THAT(interrupted.out, !ContainsSubstring("arm"));
+
   REQUIRE(reproduce("arm -j 1").exit_code == 0);
   const Outcome made =
       testing::evbench(paper.folder, "table results/arm --format csv --all --out results/reference/arm.csv");

@@ -30,7 +30,8 @@ class LostLandmarks {
   void forget_world(std::size_t world) {
     std::erase_if(lost_, [&](const auto& entry) { return entry.second.world == world; });
   }
-  /// Backs off after a re-acquired landmark turned out to be another one: it is not searched for during a pause.
+  /// Backs off after a re-acquired landmark turned out to be another one: it is not searched for during a pause. It
+  /// need not be stored.
   void disappoint(TrackId track, double t);
 
   /// A landmark that is re-acquired.

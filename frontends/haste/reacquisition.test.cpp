@@ -2,7 +2,6 @@
 #include <map>
 #include <optional>
 
-#include "core/support/median.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
 #include "frontends/haste/haste.hpp"
@@ -15,7 +14,7 @@ using evbench::testing::swing;
 
 namespace {
 
-constexpr double kStep = 0.01;     // [s] between two exchanges
+constexpr double kStep = 0.01;  // [s] between two exchanges
 
 const EventScene& lost_scene() {
   static const EventScene result(swing, 1.0, EventScene::quadrangles(150, 1));
@@ -58,11 +57,10 @@ Feedback feedback(double t, TrackingState state, const Landmarks& landmarks, dou
 }
 
 struct Reported {
-  std::vector<TrackObservation> observations;
   std::string trackers, finds;  ///< remarks
 };
 
-/// All observations that it publishes with feedback from `from` [s] on. `sigma` [px]: the positions' uncertainty in the
+/// What it reports after a second with feedback from `from` [s] on. `sigma` [px]: the positions' uncertainty in the
 /// feedback. One feedback of `state`, if there is one, comes first.
 Reported track(const Options& options, const Landmarks& landmarks, TrackingState state = TrackingState::tracking,
                double sigma = 0.5, double from = kStep, std::optional<TrackingState> before = std::nullopt) {
@@ -73,7 +71,6 @@ Reported track(const Options& options, const Landmarks& landmarks, TrackingState
     if (t >= from && before) haste.receive(feedback(t, *before, {}, sigma));
     if (t >= from) haste.receive(feedback(t, state, landmarks, sigma));
     haste.advance({t}, batch);
-    reported.observations.insert(reported.observations.end(), batch.observations.begin(), batch.observations.end());
   }
   const std::vector<std::string> remarks = haste.remarks();
   for (const std::string& remark : remarks) {
