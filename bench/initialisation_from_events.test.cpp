@@ -9,7 +9,7 @@
 using namespace evbench;
 using namespace evbench::testing;
 
-TEST_CASE("An initial map from little translation may be wrong, and the final estimate is right", "[long]") {
+TEST_CASE("From a start in a deceleration, with little translation, the final estimate is right", "[long]") {
   const auto motion = data_file("dynamic_6dof/motion.txt");
   if (!motion) return;
   struct Start {
@@ -26,7 +26,6 @@ TEST_CASE("An initial map from little translation may be wrong, and the final es
                                   {"boxes", 53, {{"per_observation", true}}},
                                   {"plane", 52, {{"lag", 1}}},
                                   {"boxes", 53, {{"lag", 1}}}};
-  std::set<std::string> redone;  // options with which an initial map was rejected
   for (const auto& [scene, seed, options] : starts) {
     CAPTURE(scene, seed, dump_json(options));
     Json config{{"name", "start"},
@@ -50,8 +49,5 @@ TEST_CASE("An initial map from little translation may be wrong, and the final es
     const Json metrics = parse_json(read_file(run + "/metrics.json"));
     CHECK(metrics.at("status").at("state") == "ok");
     CHECK(metrics.at("final").at("ate").at("trans_percent").get<double>() < 3.0);
-    const bool was_rejected = read_file(run + "/log.txt").find("the initial map is rejected") != std::string::npos;
-    if (was_rejected) redone.insert(dump_json(options));
   }
-  CHECK(redone.size() == 3);  // otherwise the test does not cover rejected maps
 }

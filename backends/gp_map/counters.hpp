@@ -9,7 +9,6 @@ namespace evbench::gp_map {
 /// What the modules count.
 enum class Count {
   initial_maps,
-  initial_maps_rejected,
   landmarks,                ///< that tracks became
   landmarks_without_depth,  ///< of these: at the scene's depth, until they show parallax
   misfits,                  ///< attempts to triangulate a track that no point fits
@@ -33,7 +32,6 @@ enum class Count {
 
 inline constexpr std::array<const char*, static_cast<std::size_t>(Count::count)> kCountNames = {
     "initial_maps",
-    "initial_maps_rejected",
     "landmarks",
     "landmarks_without_depth",
     "misfits",
@@ -53,7 +51,7 @@ inline constexpr std::array<const char*, static_cast<std::size_t>(Count::count)>
     "updates_damped",
     "stages"};
 
-/// Of one run, over all its maps.
+/// Of one map.
 class Counters {
  public:
   std::int64_t& operator[](Count what) { return values_[static_cast<std::size_t>(what)]; }

@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 29);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 30);
 
 constexpr double kMemory = 10.0;  ///< [s] before there is a map, tracks are dropped this long after their end
 
@@ -63,13 +63,9 @@ void GpMap::step(double t) {
     search_alternatives();
     estimate.end_step();
     map_->check.follow(tracks_, map_->search.is_exhausted());
-    if (is_rejected()) {
-      reinitialise();
-    } else {
-      check_support();
-      publish_recent(t);
-      predict_next_state();
-    }
+    check_support();
+    publish_recent(t);
+    predict_next_state();
   }
   tracks_.drop_ended(t, map_.has_value(), kMemory);
   add_record(t, std::exchange(seconds_since_step_, 0.0) + seconds_since(start), 1, {});
@@ -84,8 +80,7 @@ bool GpMap::initialise(double t) {
   auto first = initial_map_.attempt(tracks_.waiting(), t);
   if (!first) return false;
   tracks_.remember();
-  const auto rejected = static_cast<int>(counters_[Count::initial_maps_rejected]);
-  map_.emplace(std::move(first->graph), options_, rejected, counters_);
+  map_.emplace(std::move(first->graph), options_, counters_);
   for (std::size_t j = 0; j < first->tracks.size(); ++j) tracks_.become_landmark(first->tracks[j], static_cast<int>(j));
   ++counters_[Count::initial_maps];
   counters_[Count::landmarks] += static_cast<std::int64_t>(first->tracks.size());
@@ -135,28 +130,6 @@ void GpMap::adopt(const AlternativeEstimate& other) {
   for (int i = 0; i < kSettling; ++i) estimate.update();
   map_->outliers.reject_since(known, estimate, tracks_);
   map_->recent.reset();
-}
-
-bool GpMap::is_rejected() const {
-  const bool data_continue = map_->estimate.now() < until_;
-  return !published_ && data_continue && map_->check.is_rejected(map_->estimate, tracks_);
-}
-
-/// Drops the map, as before the first one. The trajectory of the next map reaches back to the beginning of this one.
-/// Close states are left out: there are many of them because predictions from a wrong map are far off, and they would
-/// slow down the attempts.
-void GpMap::reinitialise() {
-  constexpr double kApart = 0.02;  // [s]
-  report("map_rejected", "the initial map is rejected: most tracks do not fit it");
-  for (const ControlState& state : graph().states) {
-    if (state.t >= initial_map_.newest() + kApart) initial_map_.add_state_time(state.t);
-  }
-  initial_map_.reinitialise();
-  ++counters_[Count::initial_maps_rejected];
-  reinitialised_ = true;
-  map_.reset();
-  monitor_ = TrackingMonitor(context_.patience);  // its status is that of the rejected map
-  tracks_.restart();
 }
 
 void GpMap::check_support() {
@@ -261,7 +234,6 @@ void GpMap::validate_map() {
 
 BackEndFeedback GpMap::feedback(const FeedbackNeeds& needs) {
   BackEndFeedback feedback;
-  if (std::exchange(reinitialised_, false)) return feedback;  // no map, even if there is a new one already
   feedback.state = monitor_.state();
   if (!map_) return feedback;
   feedback.outliers = tracks_.take_outliers();

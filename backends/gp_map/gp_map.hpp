@@ -53,8 +53,6 @@ class GpMap : public BackEnd {
   void learn();
   void search_alternatives();
   void adopt(const AlternativeEstimate& other);
-  bool is_rejected() const;
-  void reinitialise();
   void check_support();
   void predict_next_state();
 
@@ -75,11 +73,10 @@ class GpMap : public BackEnd {
   StatePlacement placement_;
   InitialMapFinder initial_map_;
   TrackTable tracks_;
-  std::optional<Map> map_;  ///< from the initial map on, unless it is rejected
+  std::optional<Map> map_;  ///< from the initial map on
   Counters counters_;
   TrackingMonitor monitor_;
   const double information_share_;   ///< factor of covariances: RobustLoss::information_share()
-  bool reinitialised_ = false;       ///< since the last feedback
   double seconds_since_step_ = 0.0;  ///< spent on single observations
   double until_ = 0.0;               ///< [s] end of the last batch
   std::optional<double> published_;  ///< [s] time of the last published pose

@@ -5,6 +5,7 @@
 
 #include "backends/gp_map/estimate.hpp"
 #include "backends/gp_map/modules/feature_prediction.hpp"
+#include "backends/gp_map/modules/map_check.hpp"
 #include "backends/gp_map/modules/recent_motion.hpp"
 #include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/options.hpp"
@@ -14,8 +15,8 @@ namespace evbench::gp_map {
 /// One map: its estimate and the modules that work on it. A module gets the estimate and the table of tracks, and sees
 /// no other module.
 struct Map {
-  /// `first`: the problem of an initial map; `rejected`: how many initial maps were rejected before.
-  Map(FactorGraph first, const Options& options, int rejected, Counters& counters)
+  /// `first`: the problem of an initial map.
+  Map(FactorGraph first, const Options& options, Counters& counters)
       : estimate(std::move(first), SmootherOptions{.lag = options.lag}, options.health.min_landmarks,
                  options.map.tentative, counters),
         triangulation(options.map, options.sigma_scale),
@@ -25,7 +26,6 @@ struct Map {
         prior(options.learn),
         relaxation(options.relaxation, options.learn.window, estimate.graph().qc),
         search(options.search, estimate.graph().states.front().t),
-        check(options.rejection, options.initialiser.min_tracks, rejected),
         reassociation(options.reassociation, options.sigma_scale),
         recent(options.learn.prior == LearnPrior::never
                    ? std::nullopt

@@ -40,7 +40,6 @@ void Options::declare(OptionSet& set) {
   set.group("track_noise", track_noise, "noise of single tracks");
   set.group("relaxation", relaxation, "a weaker prior in aggressive motion");
   set.group("search", search, "search of alternative estimates");
-  set.group("rejection", rejection, "rejection of a wrong initial map");
   set.group("reassociation", reassociation, "re-acquired tracks");
   set.group("validation", validation, "whether the final estimate is to be trusted");
   set.group("health", health, "degraded and lost");

@@ -5,7 +5,6 @@
 #include "backends/gp_map/modules/hypothesis_search.hpp"
 #include "backends/gp_map/modules/landmark_triangulation.hpp"
 #include "backends/gp_map/modules/leverage_bound.hpp"
-#include "backends/gp_map/modules/map_check.hpp"
 #include "backends/gp_map/modules/map_validation.hpp"
 #include "backends/gp_map/modules/motion_prior.hpp"
 #include "backends/gp_map/modules/outlier_rejection.hpp"
@@ -50,7 +49,6 @@ struct Options {
   TrackNoiseOptions track_noise;
   RelaxationOptions relaxation;
   SearchOptions search;
-  RejectionOptions rejection;
   ReassociationOptions reassociation;
   ValidationOptions validation;
   HealthOptions health;

@@ -130,19 +130,4 @@ void TrackTable::recall(const std::function<bool(int landmark)>& is_alive) {
   }
 }
 
-void TrackTable::restart() {
-  for (auto& [id, track] : tracks_) track = {.ended = track.ended};
-  waiting_ = std::exchange(remembered_, {});
-  for (const TrackId id : waiting_.ids()) {
-    tracks_.try_emplace(id, Track{.ended = true});
-    live_.insert(id);
-  }
-  tracks_of_landmarks_.clear();
-  new_observations_.clear();
-  reappeared_.clear();
-  outliers_.clear();
-  ended_landmarks_.clear();
-  tracks_with_landmarks_ = 0;
-}
-
 }  // namespace evbench::gp_map

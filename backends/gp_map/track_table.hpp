@@ -106,8 +106,6 @@ class TrackTable {
   /// Tracks that are not landmarks wait again, with all their observations: they did not fit a wrong estimate. Tracks
   /// that are landmarks (`is_alive`) stay so.
   void recall(const std::function<bool(int landmark)>& is_alive);
-  /// There is no map any more: all remembered tracks wait.
-  void restart();
 
  private:
   void take(const UndistortedObservation& z, const std::function<void(const UndistortedObservation&)>& association);

@@ -70,17 +70,4 @@ TEST_CASE("A mismatched track is ignored until it ends") {
   CHECK(tracks.take_observations().size() == 1);
 }
 
-TEST_CASE("After a restart the remembered tracks wait, and nothing is a landmark") {
-  TrackTable tracks(1.0);
-  observe(tracks, 4, 0.1);
-  tracks.remember();
-  tracks.become_landmark(4, 0);
-  observe(tracks, 4, 0.2);
-  tracks.restart();
-  CHECK(tracks.take_observations().empty());
-  CHECK(tracks.find(4)->role == TrackTable::Role::waiting);
-  CHECK(tracks.waiting().observations(4).size() == 2);
-  CHECK(tracks.tracks_with_landmarks() == 0);
-}
-
 }  // namespace evbench::gp_map

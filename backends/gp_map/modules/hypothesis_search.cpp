@@ -16,7 +16,7 @@ std::optional<AlternativeEstimate> HypothesisSearch::advance(Estimate& estimate)
     next_ = estimate.now() + options_.interval;
     const auto hypothesis =
         searches_ % kPlanes == 0 ? StructureHypothesis::frontal_plane : StructureHypothesis::dual_plane;
-    search_ = begin(estimate, hypothesis, estimate.is_tentative() && searches_ % (2 * kPlanes) < kPlanes);
+    search_ = begin(estimate, hypothesis, false);  // first: what is new in view is soon too old to be searched
     if (!search_ && estimate.is_tentative()) search_ = begin(estimate, hypothesis, true);
     if (!search_ && checks_left_ > 0) --checks_left_;  // no alternative is possible
     ++searches_;

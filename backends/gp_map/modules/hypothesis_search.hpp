@@ -16,8 +16,8 @@ struct SearchOptions {
   void declare(OptionSet& set);
 };
 
-/// Searches a better alternative estimate of the recent part or, in turn, of a whole tentative map, with one of two
-/// planes, in turn; one search at a time, each in shares of bounded work.
+/// Searches a better alternative estimate of the recent part, or of a whole tentative map where no recent part can be
+/// searched. It begins with one of two planes, in turn. One search at a time, each in shares of bounded work.
 class HypothesisSearch {
  public:
   /// `begin`: time of the first state [s].

@@ -61,13 +61,6 @@ std::optional<InitialMap> InitialMapFinder::attempt(const TrackBuffer& tracks, d
   return map_of(tracks, *candidates, *found);
 }
 
-void InitialMapFinder::reinitialise() {
-  initialiser_ = Initialiser(options_.initialiser, camera_);
-  last_.reset();
-  refused_.clear();
-  waiting_ = "most tracks did not fit the last one";
-}
-
 std::string InitialMapFinder::reason() const {
   if (refused_.empty() || waiting_.empty()) return refused_ + waiting_;
   return fmt::format("{}; the last attempt, from {:.3f} to {:.3f} s: {}", waiting_, last_->t0, last_->t1, refused_);

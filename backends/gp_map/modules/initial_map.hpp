@@ -36,12 +36,6 @@ class InitialMapFinder {
   /// until t.
   std::optional<InitialMap> attempt(const TrackBuffer& tracks, double t);
 
-  /// Adds a control state at t without an attempt.
-  void add_state_time(double t) { state_times_.push_back(t); }
-
-  /// The last map was rejected: another one is searched from the next view on.
-  void reinitialise();
-
   /// Why there is no map: what another attempt needs, and why the last one failed.
   std::string reason() const;
 

@@ -19,7 +19,6 @@ export function eventName(event: RunEvent): string {
     reinitialised: "re-initialised",
     relocalised: "relocalised (found again)",
     hypothesis_accepted: "hypothesis accepted",
-    map_rejected: "initial map rejected",
     stationary_period_rejected: "stationary period rejected",
     final_estimate: "final estimate",
     validated: "final estimate validated",
