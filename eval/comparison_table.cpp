@@ -62,10 +62,14 @@ class Comparison {
       : options_(options),
         csv_(options.format == TableFormat::csv),
         numbers_(numbers_of(runs, options.causal)),
-        data_(number_data(numbers_)),
+        data_(number_data(numbers_, options.front_ends ? PairedBy::sequence : PairedBy::observations)),
         protocols_(collect_protocols(numbers_)),
-        methods_(methods_of(numbers_, run_columns(runs))) {
-    if (methods_.size() < 2) throw InputError("all runs are of one method; expected two or more to compare");
+        methods_(methods_of(numbers_, run_columns(runs), data_)) {
+    if (methods_.size() < 2) {
+      throw InputError(fmt::format("all runs {}are of one method; expected two or more to compare{}",
+                                   options.front_ends ? "" : "with the same front-end ",
+                                   options.front_ends ? "" : " (--front-ends compares front-ends, too)"));
+    }
     base_ = options.base.empty() ? &methods_.front() : &find_method(methods_, options.base);
     metrics_ = compared_metrics(options, numbers_);
     const std::pair<const char*, std::size_t> names[] = {
@@ -83,15 +87,15 @@ class Comparison {
     for (const Metric& metric : metrics_) add_rows(metric);
     if (table_.rows.empty()) {
       throw InputError(
-          fmt::format("no run is of the same data as one of \"{}\"; expected the same source, front-end and "
-                      "seed",
-                      base_->name));
+          fmt::format("no run is of the same data as one of \"{}\"; expected the same {}", base_->name, paired_by()));
     }
     add_notes();
     return format_table(table_, options_.format, options_.layout);
   }
 
  private:
+  const char* paired_by() const { return options_.front_ends ? "source and seed" : "source, front-end and seed"; }
+
   void add_rows(const Metric& metric) {
     std::vector<const Method*> others;
     std::vector<PairedComparison> comparisons;
@@ -138,8 +142,7 @@ class Comparison {
   void add_notes() {
     table_.experiments = {fmt::format("compared with {}", base_->name)};
     std::vector<std::string>& notes = table_.notes;
-    notes.push_back(
-        fmt::format("Compared with: {}. Pairs are runs of the same source, front-end and seed.", base_->name));
+    notes.push_back(fmt::format("Compared with: {}. Pairs are runs of the same {}.", base_->name, paired_by()));
     std::size_t identical = 0, known = 0;
     for (const auto& [own, other] : paired_) {
       const std::string a = observations_of(numbers_[own].run()), b = observations_of(numbers_[other].run());

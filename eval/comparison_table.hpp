@@ -14,6 +14,7 @@ struct ComparisonOptions {
   std::vector<std::string> metrics = {};   ///< of which lower or higher is better; empty: ATE, RPE, real-time factor
   TableLayout layout = {};                 ///< as in TableOptions
   std::string base = "";                   ///< name of the method with which the others are compared; empty: the first
+  bool front_ends = false;                 ///< front-ends are compared, too: pairs are runs of the same sequence
 };
 
 /// A table that compares methods with one of them, pair by pair on the same data, a row per metric and method.

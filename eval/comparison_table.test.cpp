@@ -83,12 +83,35 @@ TEST_CASE("Settings that differ on the same data are part of a method's name") {
     for (int seed = 1; seed <= 3; ++seed) results.add_seed("bundle", seed, frame, frame);
   }
   const std::vector<RunRecord> runs = results.find();
-  const auto methods = methods_of(numbers_of(runs, false), run_columns(runs));
+  const std::vector<RunNumbers> numbers = numbers_of(runs, false);
+  const auto methods = methods_of(numbers, run_columns(runs), number_data(numbers));
   REQUIRE(methods.size() == 2);
   CHECK(methods[0].name == "bundle, backend.batch_duration 0.1");
   CHECK(methods[1].runs.size() == 3);
   CHECK_THAT(make_comparison_table(runs, {}),
              ContainsSubstring("bundle, backend.batch_duration 0.2") && ContainsSubstring("2 [2, 2]"));
+}
+
+TEST_CASE("Front-ends are compared on the same source and seed where that is asked for") {
+  const Results results;
+  for (int seed = 1; seed <= 3; ++seed) {
+    for (const auto& [threads, ate] : {std::pair{1, 0.1}, {2, 0.05}}) {
+      Json json = run("arm", "estimate", scores_with(ate));
+      json["seed"] = seed;
+      json["key"] = std::to_string(threads) + "-" + std::to_string(seed);
+      results.add(json["key"].get<std::string>(), json,
+                  {{"seed", seed},
+                   {"source", {{"type", "simulation"}}},
+                   {"frontend", {{"type", "haste"}, {"tracks", 50 * threads}}},
+                   {"backend", {{"type", "estimate"}}}});
+    }
+  }
+  CHECK_THROWS_WITH(make_comparison_table(results.find(), {}), ContainsSubstring("--front-ends compares front-ends"));
+  const std::string text = make_comparison_table(results.find(), {.metrics = {"ate.trans_m.rmse"}, .front_ends = true});
+  CHECK_THAT(line_with(text, "estimate, frontend.tracks 100 "), ContainsSubstring("0.5 [0.5, 0.5]"));
+  CHECK_THAT(text,
+             ContainsSubstring("Compared with: estimate, frontend.tracks 50. Pairs are runs of the same source and "
+                               "seed."));
 }
 
 TEST_CASE("Runs that can't be compared are an error that says what is expected") {
@@ -100,7 +123,8 @@ TEST_CASE("Runs that can't be compared are an error that says what is expected")
                     ContainsSubstring("did you mean \"ate.trans_m.rmse\"?"));
   Results one;
   one.add_seed("base", 1, 0.1);
-  CHECK_THROWS_WITH(make_comparison_table(one.find(), {}), ContainsSubstring("all runs are of one method"));
+  CHECK_THROWS_WITH(make_comparison_table(one.find(), {}),
+                    ContainsSubstring("all runs with the same front-end are of one method"));
   one.add_seed("other", 2, 0.1);
   CHECK_THROWS_WITH(make_comparison_table(one.find(), {}),
                     ContainsSubstring("expected the same source, front-end and seed"));

@@ -9,7 +9,6 @@
 
 #include "core/support/error.hpp"
 #include "core/support/nearest.hpp"
-#include "eval/paired_comparison.hpp"
 
 namespace evbench {
 namespace {
@@ -50,8 +49,8 @@ std::string method_name(const std::vector<const RunColumn*>& columns, std::size_
 }  // namespace
 
 std::vector<Method> methods_of(const std::vector<RunNumbers>& runs, const std::vector<RunColumn>& columns,
-                               const std::string& without, const std::string& apart) {
-  const std::vector<std::size_t> data = number_data(runs);
+                               const std::vector<std::size_t>& data, const std::string& without,
+                               const std::string& apart) {
   const std::vector<const RunColumn*> naming = method_columns(columns, data, without, apart);
   const auto left_out = std::ranges::find(columns, without, &RunColumn::name);
   const auto place = [&](std::size_t i) {

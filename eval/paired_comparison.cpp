@@ -12,11 +12,12 @@
 
 namespace evbench {
 
-std::vector<std::size_t> number_data(const std::vector<RunNumbers>& runs) {
+std::vector<std::size_t> number_data(const std::vector<RunNumbers>& runs, PairedBy paired) {
   std::unordered_map<std::string, std::size_t> known;
   std::vector<std::size_t> numbers;
   for (const RunNumbers& run : runs) {
-    numbers.push_back(known.try_emplace(data_of(run.run()), known.size()).first->second);
+    std::string data = paired == PairedBy::sequence ? sequence_of(run.run()) : data_of(run.run());
+    numbers.push_back(known.try_emplace(std::move(data), known.size()).first->second);
   }
   return numbers;
 }

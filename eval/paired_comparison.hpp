@@ -25,8 +25,14 @@ struct CostPair {
   std::size_t own_run = 0, other_run = 0;  ///< indices
 };
 
-/// Numbers the data of runs: equal numbers if runs can be compared pair by pair (data_of() in run_columns.hpp).
-std::vector<std::size_t> number_data(const std::vector<RunNumbers>& runs);
+/// What the runs of a pair have in common.
+enum class PairedBy {
+  observations,  ///< sequence and front-end (data_of() in run_columns.hpp): back-ends are compared
+  sequence,      ///< sequence_of(): front-ends, too
+};
+
+/// Numbers the data of runs: equal numbers if runs can be compared pair by pair.
+std::vector<std::size_t> number_data(const std::vector<RunNumbers>& runs, PairedBy paired = PairedBy::observations);
 
 /// The costs of some of the runs, by index; runs without a cost (RunNumbers::cost()) are left out.
 std::vector<RunCost> costs_of(std::span<const std::size_t> runs, const std::vector<RunNumbers>& numbers,

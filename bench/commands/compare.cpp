@@ -36,12 +36,15 @@ void execute(const CompareArguments& arguments) {
 
 void add_compare(CLI::App& app) {
   auto arguments = std::make_shared<CompareArguments>();
-  CLI::App* command = app.add_subcommand("compare", "Compare back-ends pair by pair on the same data, with statistics");
+  CLI::App* command =
+      app.add_subcommand("compare", "Compare back-ends or front-ends pair by pair on the same data, with statistics");
   add_run_selection(*command, arguments->runs);
   command
       ->add_option("--base", arguments->options.base,
                    "Label of the back-end with which the others are compared; by default the first")
       ->type_name("NAME");
+  command->add_flag("--front-ends", arguments->options.front_ends,
+                    "Compare front-ends, too: pairs are runs of the same source and seed");
   add_list_option(*command, "--metrics", arguments->options.metrics,
                   "Metrics to compare, e.g. ate.trans_m.rmse,common.rpe.trans_m.rmse,times.backend_ms.p99");
   add_causal_flag(*command, arguments->options.causal, "Scores of the causal poses, as first published");

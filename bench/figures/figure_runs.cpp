@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/support/error.hpp"
+#include "eval/paired_comparison.hpp"
 #include "eval/protocol.hpp"
 
 namespace evbench {
@@ -17,7 +18,7 @@ FigureRuns::FigureRuns(std::span<const RunRecord> records, bool causal, const st
                        const std::string& apart)
     : runs(numbers_of(records, causal)),
       columns(columns_with(records, without)),
-      methods(methods_of(runs, columns, without, apart)) {
+      methods(methods_of(runs, columns, number_data(runs), without, apart)) {
   if (methods.empty()) throw InputError("none of these runs was done yet; expected some to draw");
 }
 
