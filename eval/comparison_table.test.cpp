@@ -6,6 +6,7 @@
 #include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "eval/methods.hpp"
+#include "eval/paired_comparison.hpp"
 #include "eval/testing/runs.hpp"
 
 namespace evbench {
