@@ -13,7 +13,7 @@
 namespace evbench::gp_map {
 
 /// The estimate of one map: the smoother, the noise learnt from the data, and the factors of its landmarks' sigmas.
-/// It begins with an initial map and ends if that is rejected.
+/// It begins with an initial map.
 class Estimate {
  public:
   /// `first`: the problem of an initial map; `enough`: landmarks in view that show fully that the camera moves;
