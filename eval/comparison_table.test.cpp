@@ -96,14 +96,14 @@ TEST_CASE("Settings that differ on the same data are part of a method's name") {
 TEST_CASE("Front-ends are compared on the same source and seed where that is asked for") {
   const Results results;
   for (int seed = 1; seed <= 3; ++seed) {
-    for (const auto& [threads, ate] : {std::pair{1, 0.1}, {2, 0.05}}) {
+    for (const auto& [tracks, ate] : {std::pair{50, 0.1}, {100, 0.05}}) {
       Json json = run("arm", "estimate", scores_with(ate));
       json["seed"] = seed;
-      json["key"] = std::to_string(threads) + "-" + std::to_string(seed);
+      json["key"] = std::to_string(tracks) + "-" + std::to_string(seed);
       results.add(json["key"].get<std::string>(), json,
                   {{"seed", seed},
                    {"source", {{"type", "simulation"}}},
-                   {"frontend", {{"type", "haste"}, {"tracks", 50 * threads}}},
+                   {"frontend", {{"type", "haste"}, {"tracks", tracks}}},
                    {"backend", {{"type", "estimate"}}}});
     }
   }

@@ -72,16 +72,15 @@ TEST_CASE("A prior that is too strong is relaxed for aggressive motion", "[long]
                                 "tracks": {"lifetime": [0.3, 1.0]}})",
                             R"({"motion": {"kind": "smooth_random", "max_frequency": 4.0, "rotation_amplitude": 0.2},
                                 "tracks": {"lifetime": [0.3, 1.0]}})"}) {
-    std::vector<double> errors;  // a few seeds have too few good tracks in the aggressive part
-    for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+    std::vector<double> errors;  // one seed may have few good tracks
+    for (const std::uint64_t seed : {1, 2, 3}) {
       const auto result =
           run(TrackedScene(4.0, scene, seed), {.backend = R"({"qc_scale": 0.1, "relaxation": {"most": 1000}})"});
       INFO("seed " << seed << ": " << result.backend->status().reason << " " << result.scores.ate.trans_percent);
-      CHECK((result.backend->status().state == RunState::ok || result.backend->status().state == RunState::degraded));
+      CHECK(result.backend->status().state == RunState::ok);
       errors.push_back(result.scores.ate.trans_percent);
     }
     CHECK(median(errors) < 0.3);
-    CHECK(std::ranges::count_if(errors, [](double percent) { return percent > 1.0; }) <= 2);
   }
 }
 
