@@ -53,7 +53,8 @@ class Unpacker {
 
   void extract_file(const fs::path& target) {
     if (fs::exists(target)) refuse("is there twice");
-    const std::unique_ptr<std::FILE, decltype(&std::fclose)> file(std::fopen(target.c_str(), "wb"), std::fclose);
+    const auto close = [](std::FILE* open) { std::fclose(open); };
+    const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(target.c_str(), "wb"), close);
     if (!file) fail_writing(errno);
     while (const std::size_t size = archive_.read(block_)) {
       if (size > left_) refuse("unpacks to more than the catalogue allows");

@@ -36,7 +36,7 @@ const char* const kSequence = R"({"name": "a", "description": "d"})";
 
 TEST_CASE("The catalogue of the program has the Event-Camera Dataset with addresses and licence") {
   const auto catalogue = read_catalogue(catalogue_path());
-  const Dataset& dataset = find_dataset(catalogue, "ecd/dynamic_6dof");
+  const Dataset dataset = find_dataset(catalogue, "ecd/dynamic_6dof");
   REQUIRE(dataset.files.size() == 1);
   CHECK(dataset.files[0].url == "https://rpg.ifi.uzh.ch/datasets/davis/dynamic_6dof.zip");
   CHECK(dataset.files[0].unpack);
