@@ -72,6 +72,8 @@ NodeName=node1 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 1)) CPUs=2 R
 NodeName=node2 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 2)) CPUs=2 RealMemory=$memory State=UNKNOWN
 PartitionName=main Nodes=node1,node2 Default=YES MaxTime=INFINITE State=UP
 CONF
+  # Slurm 23 and later ask for control groups, which containers may not have; earlier versions do not know the setting.
+  [ "$(slurmd -V | grep -o '[0-9]*' | head -n1)" -lt 23 ] || echo CgroupPlugin=disabled >"$dir/cgroup.conf"
   export SLURM_CONF=$dir/slurm.conf
   slurmctld
   slurmd -N node1
