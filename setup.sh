@@ -39,7 +39,11 @@ wanted() {
     esac
   done < packages.txt
 }
-installed() { dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed'; }
+# Whether a package is installed, or another one that provides it (as some packages of Node.js provide npm).
+installed() {
+  dpkg-query -W -f='${db:Status-Status} ${Package}, ${Provides},\n' 2>/dev/null | sed 's/ ([^)]*)//g' |
+    grep -E "^installed (.* )?$(printf '%s' "$1" | sed 's/[.+]/\\&/g')," >/dev/null
+}
 exists() { apt-cache show --no-all-versions "$1" >/dev/null 2>&1; }
 
 # One name a line of what is missing: the first of a line's alternatives that the distribution has.
