@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/data/pose_file.hpp"
 #include "core/geometry/so3.hpp"
@@ -91,6 +92,27 @@ class PaceClock {
   double growth_;  ///< of its logarithm [1/s]
 };
 
+/// A remark on poses from `begin` to `end` [s] that are far apart: the camera's motion between them is made up.
+std::optional<std::string> remark_on_gaps(const PoseTrajectory& file, double begin, double end,
+                                          const std::string& name) {
+  constexpr double kGap = 0.2;  // [s]; motion capture has 0.01, and rarely misses more than 0.1
+  const std::vector<StampedPose>& poses = file.poses();
+  const auto gap = [&](std::size_t i) { return poses[i + 1].t - poses[i].t; };
+  std::optional<std::size_t> longest;
+  int gaps = 0;
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+    if (gap(i) <= kGap || poses[i + 1].t <= begin || poses[i].t >= end) continue;
+    ++gaps;
+    if (!longest || gap(i) > gap(*longest)) longest = i;
+  }
+  if (!longest) return std::nullopt;
+  return fmt::format(
+      "{} has {} of more than {:g} s between its poses, up to {:.2f} s (from {:.2f} s after its first "
+      "one): the camera's motion there is interpolated",
+      name, gaps == 1 ? "one gap" : fmt::format("{} gaps", gaps), kGap, gap(*longest),
+      poses[*longest].t - file.start());
+}
+
 Motion from_trajectory(const MotionOptions& options, double duration, const std::string& folder,
                        const std::string& place, std::vector<std::string>* remarks) {
   if (options.trajectory.empty()) {
@@ -110,6 +132,11 @@ Motion from_trajectory(const MotionOptions& options, double duration, const std:
     throw InputError(
         fmt::format("{}.trajectory: {} lasts {:.3f} s; expected at least start and duration at its pace = {:.3f} s",
                     place, options.trajectory, file.end() - file.start(), options.start + duration));
+  }
+  if (remarks != nullptr) {
+    if (const auto remark = remark_on_gaps(file, begin, begin + duration, options.trajectory)) {
+      remarks->push_back(*remark);
+    }
   }
   std::vector<StampedPose> knots = knots_of(file, options.knot_rate);
   for (StampedPose& knot : knots) knot.T.p *= options.scale;

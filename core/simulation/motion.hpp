@@ -41,7 +41,7 @@ struct MotionOptions {
 /// `pace` is the speed at which a motion is run through: it changes from its first value to its second over the
 /// sequence, by the same factor each second.
 /// Throws InputError, naming `place`, when a trajectory file is missing, too short for `duration` [s], or damaged. What
-/// was assumed about it is added to `remarks`, if they are given.
+/// was assumed about it, and that its poses are far apart, is added to `remarks`, if they are given.
 Motion make_motion(const MotionOptions& options, double duration, std::uint64_t seed, const std::string& folder,
                    const std::string& place, std::vector<std::string>* remarks = nullptr);
 

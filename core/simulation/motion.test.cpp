@@ -109,6 +109,32 @@ TEST_CASE("A motion through few poses of a trajectory has no jump of acceleratio
   }
 }
 
+TEST_CASE("Poses of a trajectory that are far apart where it is followed are remarked on") {
+  const testing::TemporaryFolder folder;
+  std::vector<StampedPose> poses = sample_motion(motion_of({}), 10.0, 50.0).poses();
+  std::erase_if(poses, [](const StampedPose& pose) {
+    return (pose.t > 2.01 && pose.t < 4.49) || (pose.t > 6.01 && pose.t < 6.49);
+  });
+  write_file(folder.file("path.txt"), format_tum(PoseTrajectory(std::move(poses))));
+  const auto remarks = [&](double start, double duration) {
+    MotionOptions options;
+    options.kind = "trajectory";
+    options.trajectory = "path.txt";
+    options.start = start;
+    std::vector<std::string> texts;
+    make_motion(options, duration, 3, folder.path(), "motion", &texts);
+    return texts;
+  };
+  CHECK(remarks(0.0, 1.9).empty());
+  CHECK(remarks(7.0, 2.0).empty());
+  const auto both = remarks(0.0, 9.0);
+  REQUIRE(both.size() == 1);
+  CHECK_THAT(both[0], ContainsSubstring("path.txt has 2 gaps") && ContainsSubstring("up to 2.50 s (from 2.00 s"));
+  const auto one = remarks(5.0, 3.0);
+  REQUIRE(one.size() == 1);
+  CHECK_THAT(one[0], ContainsSubstring("one gap") && ContainsSubstring("up to 0.50 s (from 6.00 s"));
+}
+
 TEST_CASE("A camera on hold rests, one that only rotates keeps its place, and neither jumps") {
   MotionOptions options;
   options.hold = {2.0, 3.0};
