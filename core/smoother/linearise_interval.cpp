@@ -241,10 +241,9 @@ struct LocalSystem {
   }
 
   /// M F, where F = −Φ without its column of the pose: (−Δt, −1) for ϖ_0 and WNOA.
-  template <int Rows>
-  static Eigen::Matrix<double, Rows, kBegin> times_F(const GpInterval& interval,
-                                                     const Eigen::Matrix<double, Rows, kState>& M) {
-    Eigen::Matrix<double, Rows, kBegin> result;
+  template <class Derived>
+  static auto times_F(const GpInterval& interval, const Eigen::MatrixBase<Derived>& M) {
+    Eigen::Matrix<double, Derived::RowsAtCompileTime, kBegin> result;
     result.template leftCols<6>() = -interval.dt() * M.template leftCols<6>() - M.template middleCols<6>(6);
     if constexpr (Orders == 3) {
       const Vector3 decay = singer::transition(interval.dt(), interval.singer_rate()).col(2);
