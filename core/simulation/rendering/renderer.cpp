@@ -319,11 +319,11 @@ float Renderer::corner(const View& view, std::size_t index) const {
   float sum = 0.0F;
   for (std::span<Hit> rest(hits); !rest.empty();) {
     const Hit hit = rest.front();
-    const auto others = std::ranges::partition(rest, [&](const Hit& h) { return h.same_face(hit); });
+    const auto others = std::partition(rest.begin(), rest.end(), [&](const Hit& h) { return h.same_face(hit); });
     float log_intensity = 0.0F;
     shade(view, hit, index, 1, &log_intensity);
-    sum += static_cast<float>(rest.size() - others.size()) * std::exp(log_intensity);
-    rest = std::span<Hit>(others.begin(), others.end());
+    sum += static_cast<float>(others - rest.begin()) * std::exp(log_intensity);
+    rest = std::span<Hit>(others, rest.end());
   }
   return fast_log(sum / kEdgeRays);
 }
