@@ -35,7 +35,7 @@ void add_rows(TextTable& table, const std::string& path, const std::string& prot
               const std::vector<TrackObservation>& truth, const std::vector<TrackObservation>& tracks, bool csv) {
   for (const auto& [name, value] : {std::pair{"full", TrackProtocol::full}, {"cropped", TrackProtocol::cropped}}) {
     if (protocol != "both" && protocol != name) continue;
-    const TrackBenchmark b = [&] {
+    const TrackBenchmark b = [&, value = value] {
       try {
         return benchmark_tracks(truth, tracks, value);
       } catch (const InputError& error) {
