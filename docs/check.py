@@ -29,7 +29,6 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 LONGEST_PAGE, LONGEST_README = 300, 120  # lines
 GENERATED = ("docs/reference/command_line.md", "docs/reference/configuration.md")
 FOLDERS = "core|eval|frontends|backends|bench|configs|cmake|examples|docs"
-TIMEOUT = 60.0  # of a command [s]
 # What the program prints of work that takes long, as it does on a slow machine: "TITLE  3 of 9 done", "TITLE  2 million".
 PROGRESS = re.compile(r"\S.*  [\d.]+ (of|million|thousand) [\d.]*.*")
 NOT_RUN = re.compile(r"<!--\s*not run:\s*\S.*-->")
@@ -311,7 +310,7 @@ def environment_for(program):
     return {**kept, "PATH": f"{program.parent}:{kept.get('PATH', '')}", "COLUMNS": "120", "LC_ALL": "C.UTF-8"}
 
 
-def run_page(root, page, program, timeout=TIMEOUT):
+def run_page(root, page, program, timeout):
     """Number of commands of a page, and a text for each that fails."""
     blocks, _ = parse((root / page).read_text(encoding="utf-8"))
     count, failures = 0, []
@@ -336,10 +335,11 @@ def run_page(root, page, program, timeout=TIMEOUT):
     return count, failures
 
 
-def check_commands(root, pages, program, jobs):
+def check_commands(root, pages, program, jobs, timeout):
     total, failed = 0, 0
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        for page, (count, failures) in zip(pages, pool.map(lambda page: run_page(root, page, program), pages)):
+        results = pool.map(lambda page: run_page(root, page, program, timeout), pages)
+        for page, (count, failures) in zip(pages, results):
             total, failed = total + count, failed + len(failures)
             for failure in failures:
                 print(failure)
@@ -354,6 +354,8 @@ def main():
     parser.add_argument("--links", action="store_true", help="links, anchors, lengths, marks of blocks")
     parser.add_argument("--commands", action="store_true", help="run console blocks")
     parser.add_argument("--evbench", type=pathlib.Path, help="path of the program, for --commands")
+    parser.add_argument("--limit", type=float, default=180.0, metavar="SECONDS",
+                        help="how long a command may take: one that takes longer hangs (default: 180)")
     parser.add_argument("-j", "--jobs", type=int, default=1, help="pages whose commands run at a time")
     parser.add_argument("pages", nargs="*", metavar="PAGE", help="only these pages")
     arguments = parser.parse_args()
@@ -366,7 +368,7 @@ def main():
     if arguments.links:
         good = check_links(ROOT, pages)
     if arguments.commands:
-        good = check_commands(ROOT, pages, arguments.evbench.resolve(), arguments.jobs) and good
+        good = check_commands(ROOT, pages, arguments.evbench.resolve(), arguments.jobs, arguments.limit) and good
     return 0 if good else 1
 
 

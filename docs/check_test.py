@@ -154,7 +154,7 @@ class Commands(Repository):
     def test_the_number_of_failures_is_told(self):
         self.write("docs/page.md", "```console\n$ true\n$ false\n```\n")
         with contextlib.redirect_stdout(io.StringIO()) as output:
-            self.assertFalse(check.check_commands(self.root, ["docs/page.md"], self.program, 1))
+            self.assertFalse(check.check_commands(self.root, ["docs/page.md"], self.program, 1, 10.0))
         self.assertIn("1 of 2 commands", output.getvalue())
 
 
