@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "core/smoother/cost.hpp"
 #include "core/smoother/factors.hpp"
 #include "core/smoother/problem_graph.hpp"
 #include "core/support/index.hpp"

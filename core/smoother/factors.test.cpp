@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/smoother/cost.hpp"
 #include "core/support/index.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/differences.hpp"

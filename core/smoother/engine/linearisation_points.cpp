@@ -26,7 +26,8 @@ void LinearisationPoints::add_landmark(const Vector3& position) {
 
 void LinearisationPoints::set_state_delta(FactorGraph& graph, int i, const StateVector& delta) {
   state_deltas_[index(i)] = delta;
-  graph.states[index(i)] = states_[index(i)].retract(delta);
+  // Without an increment it is the point itself: a retraction rounds, and a step that is taken back must leave nothing.
+  graph.states[index(i)] = delta.isZero(0.0) ? states_[index(i)] : states_[index(i)].retract(delta);
 }
 
 void LinearisationPoints::set_landmark_delta(FactorGraph& graph, int j, const Vector3& delta) {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/smoother/batch_solver.hpp"
+#include "core/smoother/cost.hpp"
 #include "core/smoother/testing/random_session.hpp"
 #include "core/smoother/testing/rounding.hpp"
 #include "core/testing/catch2.hpp"

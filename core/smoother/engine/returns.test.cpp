@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/smoother/cost.hpp"
 #include "core/smoother/smoother.hpp"
 #include "core/smoother/testing/random_session.hpp"
 #include "core/support/index.hpp"
