@@ -269,7 +269,8 @@ TEST_CASE("A burst of a million events in 10 ms does no lasting harm", "[slow]")
 TEST_CASE("A camera that sees only noise for a short time, and loses all trackers, continues in the same map",
           "[long]") {
   constexpr double kGap = 0.2;  // [s]
-  for (const std::uint64_t seed : {1, 2}) {
+  std::vector<double> errors;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     EventScene scene(swing, 5.0, EventScene::quadrangles(150, seed));
     scene.silence(3.0, 3.0 + kGap);
     Random random(seed);
@@ -283,8 +284,10 @@ TEST_CASE("A camera that sees only noise for a short time, and loses all tracker
     CAPTURE(seed, execution.result.status.reason);
     CHECK(execution.result.segments.size() == 1);
     CHECK(execution.result.status.state != RunState::lost);
-    CHECK(error(scene, execution) < 0.03);
+    errors.push_back(error(scene, execution));
+    if (seed <= 2 || execution.result.status.state == RunState::ok) CHECK(errors.back() < 0.03);
   }
+  CHECK(median(errors) < 0.015);
 }
 
 TEST_CASE("Hot pixels that fire five hundred times a second do no harm", "[slow]") {
